@@ -24,13 +24,13 @@ namespace surf::workflow {
 namespace {
 
 constexpr int tip_sizes[] = {5, 7, 9, 11, 13, 19, 27, 39, 57};
-constexpr int enough = 9;                   // samples that are tried in any case
-constexpr double told_share = 0.1;          // of the directions that a round tip goes by
-constexpr double told_deviations = 3;       // of noise: a tip no deeper is told by noise alone
-constexpr double ground_correlation = 0.5;  // of whitened neighbours in two rows
-constexpr double noise_span = 6;            // standard deviations of noise in the range of heights
+constexpr int enough = 9;              // tips up to this size are always tried
+constexpr double told_share = 0.1;     // share of the directions that bound a round tip
+constexpr double told_deviations = 3;  // noise deviations: a shallower tip is explained by noise
+constexpr double ground_correlation = 0.5;  // of whitened neighbours in adjacent rows
+constexpr double noise_span = 6;  // range of heights due to noise, in its standard deviations
 
-/// What a step says, kept for later.
+/// A reporter that stores the messages of a step.
 Reporter keeping(PreparedAfm& prepared, const Watch& watch) {
   Reporter reporter;
   reporter.on_progress = [watch](double done, double total, std::string_view) {
@@ -58,8 +58,8 @@ void level_scan(PreparedAfm& prepared, const HeightField& scan, const AfmPrepara
   prepared.image = std::move(levelled.field);
 }
 
-/// Noise knows nothing of the row before: where a "substrate" goes on from row to row it is rough
-/// ground.
+/// Whether the "substrate" is rough ground: unlike noise, rough ground is correlated from row to
+/// row.
 bool is_ground(const SubstrateNoise& found) {
   const Grid<double> white = whiten(found.residual_nm, found.estimate.noise, found.substrate);
   NoiseCheckOptions options;
@@ -136,7 +136,7 @@ void find_round_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const
                        "Give `reconstruction.tip`, or another scan");
   std::vector<std::vector<double>> told;
   int widest = 0;
-  std::string doubt;  // none where the sweep of any size has none
+  std::string doubt;  // empty if the sweep of any size has no doubt
   constexpr auto sizes = static_cast<double>(std::size(tip_sizes));
   for (std::size_t i = 0; i < std::size(tip_sizes); ++i) {
     const int size = tip_sizes[i];
@@ -177,9 +177,9 @@ void find_round_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const
 
 Tip meeting(const Tip& tip, PreparedAfm& prepared) {
   Reporter reporter = keeping(prepared, {});
-  reporter.on_note = nullptr;  // of a pitch that differs
+  reporter.on_note = nullptr;  // the only note is about a different pitch
   Tip met = tip_for(tip, prepared.image, "tip", reporter);
-  met.pitch() = prepared.image.pitch();  // but for what a file's text rounds
+  met.pitch() = prepared.image.pitch();  // removes rounding errors of a text file
   return met;
 }
 

@@ -14,10 +14,10 @@
 namespace surf::workflow {
 namespace {
 
-constexpr double same_pitch = 1e-3;  // relative: as models ask of fields
-constexpr double most_level = 1e9;   // grey levels beyond it would no longer be told apart
+constexpr double same_pitch = 1e-3;  // relative; models demand the same of fields
+constexpr double most_level = 1e9;   // beyond this, grey levels could no longer be distinguished
 
-/// Names of one text with commas, and no list: it is given once.
+/// Names in one text with commas, not a list of values: the text is given once.
 class NamesField final : public Field {
  public:
   explicit NamesField(std::vector<std::string>& names) : names_(names) {}
@@ -107,7 +107,7 @@ CalibrationOptions options_of(const CalibrateParameters& p) {
   return options;
 }
 
-/// Multiplies the fit by a gain that varies slowly; where that is not known, the fit is not either.
+/// Multiplies the fit by a slowly varying gain. The fit is unknown where the gain is unknown.
 void vary_gain(const CalibrateInput& input, const CalibrationImages& images, double range_nm,
                CalibrateResult& result, const Reporter& reporter) {
   const auto pixels = [&](double pitch_nm) {

@@ -30,7 +30,7 @@ std::vector<double> numbers_of(std::string_view text, const std::string& subject
   return parse_values(text, {.name = "number", .help = ""}, subject);
 }
 
-/// A file, or six numbers.
+/// Reads the name of a file, or six numbers.
 void read_transform(std::string_view text, const std::string& subject, PoseOptions& pose) {
   pose.transform_doubt.clear();
   if (std::ranges::count(text, ',') != 5) {
@@ -93,7 +93,7 @@ void describe_calibration(ParameterVisitor& visit, std::optional<GivenCalibratio
   calibration->offset = *offset;
 }
 
-/// Whether the tip is fitted, as two flags: neither leaves it to how the tip was found.
+/// Whether the tip is fitted, as two flags. Without either, it depends on how the tip was found.
 void describe_tip_fit(ParameterVisitor& visit, std::optional<bool>& refine) {
   bool keep = refine == false;
   visit(keep, {.name = "reconstruction.keep_tip",

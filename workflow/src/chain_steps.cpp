@@ -13,7 +13,7 @@
 namespace surf::workflow {
 namespace {
 
-constexpr double square = 1e-3;  // relative: as models ask of fields
+constexpr double square = 1e-3;  // relative; models demand the same of fields
 
 }  // namespace
 

@@ -5,14 +5,14 @@
 
 namespace surf::workflow {
 
-// The steps that registration and reconstruction share, each a stage of the reporter.
+// Steps shared by registration and reconstruction. Each is a stage of the reporter.
 
 void begin(const Reporter& reporter, const char* stage);
 
-/// With the scan's notes and warnings handed on.
+/// Prepares the scan and passes its notes and warnings on.
 PreparedAfm prepare(const AfmInput& afm, int threads, const Reporter& reporter);
 
-/// Of the SEM image's pixels, which must be square.
+/// Finds the model for the pixel size of the SEM image. Pixels must be square.
 StoredModel model_of(ModelRequest request, const PlacedImage& sem, const Reporter& reporter);
 
 Pose pose_of(const PoseOptions& options, const PreparedAfm& afm, const PlacedImage& sem,

@@ -10,7 +10,7 @@ namespace surf::workflow {
 namespace {
 
 constexpr double insulating_gap_ev = 2.5;
-constexpr double balanced = 0.005;  // less than this is no charging
+constexpr double balanced = 0.005;  // below this net charge per primary there is no charging
 
 }  // namespace
 

@@ -19,13 +19,13 @@ namespace {
 namespace fs = std::filesystem;
 using Seconds = std::chrono::duration<double>;
 
-constexpr double first_seconds = 10;                         // shorter jobs leave no trace
-constexpr std::size_t most_waiting = std::size_t{16} << 20;  // bytes of memory
-constexpr double most_of_the_time = 0.05;                    // spent on writing
+constexpr double first_seconds = 10;                         // shorter jobs write no checkpoint
+constexpr std::size_t most_waiting = std::size_t{16} << 20;  // bytes of unwritten records
+constexpr double most_of_the_time = 0.05;                    // share of the time spent on writing
 constexpr std::string_view extension = ".checkpoint";
 constexpr std::size_t name_digits = 8;
 
-// Whole numbers in a block: 8 bytes, lowest first.
+// Whole numbers in a block take 8 bytes, lowest first.
 void put(std::string& out, std::uint64_t value) {
   for (int shift = 0; shift < 64; shift += 8) out.push_back(static_cast<char>(value >> shift));
 }
@@ -53,9 +53,8 @@ class Reader {
   std::string_view rest_;
 };
 
-// A batch of units: its first unit, the primaries (or pixels) in it, those of the whole job as a
-// double; then
-// each unit's number, size and tally.
+// A batch of units: its first unit, the primaries (or pixels) in it, and those of the whole job as
+// a double. Each unit's number, size and tally follow.
 struct BatchHead {
   std::uint64_t first_unit;
   std::uint64_t work;
@@ -83,7 +82,7 @@ Identity read_identity(const std::string& text) {
   return identity;
 }
 
-// As it would be after a round through a file: names of files need not be UTF-8.
+// The identity as it is read back from a file: file names need not be UTF-8.
 Identity normal(const Identity& identity) { return read_identity(identity_text(identity)); }
 
 std::string date_of(const fs::path& path) {
@@ -92,7 +91,7 @@ std::string date_of(const fs::path& path) {
   return fmt::format("{:%Y-%m-%d %H:%M}", fmt::localtime(status.st_mtime));
 }
 
-// "63 %", rounded down: 100 is only said of all.
+// "63 %", rounded down, so that 100 % means all.
 std::string share(double work, double expected) {
   return expected > 0 ? fmt::format("{:.0f} %", std::floor(100 * work / expected)) : "a part";
 }
@@ -160,7 +159,7 @@ void Checkpoint::resume() {
                     date_of(path_)));
 }
 
-// Left by jobs that wrote to the same output and differ: nobody else will find them.
+// Notes checkpoints of other jobs with the same output, which nobody would find otherwise.
 void Checkpoint::note_others() const {
   const std::string own = path_.filename().string();
   const std::string stem = own.substr(0, own.size() - extension.size() - name_digits - 1);
@@ -198,7 +197,7 @@ void Checkpoint::load(const Batch& batch) {
 }
 
 bool Checkpoint::recall(std::size_t unit, mc::UnitTally& tally) {
-  // Units are asked for in their order, nearly: so only a batch or two is in memory.
+  // Units are requested nearly in order, so only a batch or two is in memory.
   while (!batches_.empty() && batches_.back().first_unit <= unit) {
     load(batches_.back());
     batches_.pop_back();
@@ -216,7 +215,7 @@ void Checkpoint::record(std::size_t unit, const mc::UnitTally& tally) {
   put(waiting_, unit);
   put(waiting_, bytes.size());
   waiting_ += bytes;
-  // With a wanted accuracy nobody knows how many primaries it will take: pixels are counted.
+  // With a wanted accuracy the number of primaries is not known beforehand, so pixels are counted.
   work_waiting_ += tally.controls.empty() ? tally.balance.incident
                                           : static_cast<std::int64_t>(tally.pixels.size());
   if (waiting_.size() < most_waiting && Clock::now() < due_) return;
@@ -235,8 +234,7 @@ bool Checkpoint::write() {
   put(content, static_cast<std::uint64_t>(work_waiting_));
   put(content, std::bit_cast<std::uint64_t>(expected_));
   content += waiting_;
-  // Where it cannot be written these units are done again by a job that resumes; later ones need
-  // not.
+  // If writing fails, a resumed job does only these units again, not the later ones.
   waiting_.clear();
   work_waiting_ = 0;
   try {

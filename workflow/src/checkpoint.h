@@ -17,36 +17,35 @@
 
 namespace surf::workflow {
 
-/// The work of a job that is done so far, on disk: the same job goes on from there to the same
-/// bytes. A job that is done before the first write is due never writes one.
+/// The finished work of a job on disk: the same job continues from it to the same bytes. A job that
+/// ends before the first write is due never writes a checkpoint.
 ///
-/// Its file begins with the job's identity, and goes on with blocks of finished units, in any
-/// order; a lost block costs its units alone. Trouble in writing is a warning: the job goes on.
+/// The file begins with the job's identity. Blocks of finished units follow in any order; a lost
+/// block costs only its units. An error in writing is a warning, and the job continues.
 class Checkpoint : public mc::UnitJournal {
  public:
   using Say = std::function<void(const std::string&)>;
 
-  /// Looks for a checkpoint to go on from, and says so through `note`, or through `warn` that it is
-  /// damaged. One of another job stays as it is: under a name of its own it is noted, under the
-  /// name that was asked for it is a FileError that says what differs. With `restart` all is done
+  /// Looks for a checkpoint to continue from. Reports one through `note`, or through `warn` that it
+  /// is damaged. A checkpoint of another job is not touched: beside the output it is noted; if it
+  /// has the requested name, FileError says what differs. With `restart` everything is simulated
   /// anew.
   Checkpoint(const CheckpointOptions& options, const std::filesystem::path& output,
              Identity identity, Say note, Say warn);
 
-  /// Keeps what is not written yet, if the file was begun, unless `finish` was called.
+  /// Writes the records that are not written yet, if the file exists, unless `finish` was called.
   ~Checkpoint() override;
 
   bool recall(std::size_t unit, mc::UnitTally& tally) override;
   void record(std::size_t unit, const mc::UnitTally& tally) override;
 
-  /// How much work there is in all, in primaries, or in pixels with a wanted accuracy; for
-  /// messages.
+  /// Sets the total work in primaries, or in pixels with a wanted accuracy; for messages.
   void expect(double work) { expected_ = work; }
 
-  /// Writes what is not written yet. Whether there is a file now.
+  /// Writes the records that are not written yet. Returns whether there is a file now.
   bool keep();
 
-  /// The job is done: deletes the file.
+  /// Deletes the file, because the job is done.
   void finish();
 
   const std::filesystem::path& path() const { return path_; }
@@ -70,8 +69,8 @@ class Checkpoint : public mc::UnitJournal {
   CheckpointFile file_;
   double expected_ = 0;
 
-  std::vector<Batch> batches_;                   // to be recalled; the next one last
-  std::map<std::size_t, std::string> recalled_;  // read, not asked for yet
+  std::vector<Batch> batches_;                   // to be recalled; the next one is last
+  std::map<std::size_t, std::string> recalled_;  // read from the file, not requested yet
 
   std::string waiting_;  // records that are not written yet
   std::size_t first_waiting_ = 0;
@@ -81,7 +80,7 @@ class Checkpoint : public mc::UnitJournal {
   bool finished_ = false;
 };
 
-/// NAME.FFFFFFFF.checkpoint for an output NAME.exr, by the fingerprint of its job.
+/// The path NAME.FFFFFFFF.checkpoint for an output NAME.exr, with the fingerprint of its job.
 std::filesystem::path checkpoint_path(const std::filesystem::path& output,
                                       const Identity& identity);
 

@@ -42,7 +42,7 @@ std::string head_of(const std::string& content) {
   return head + sha256(content);
 }
 
-// 0 for what is no head.
+// Reads the size from a block's head; 0 if it is not a head.
 std::uint64_t size_in(const std::string& head) {
   if (!head.starts_with(tag)) return 0;
   std::uint64_t size = 0;
@@ -51,7 +51,7 @@ std::uint64_t size_in(const std::string& head) {
   return size;
 }
 
-// Up to `size` bytes: fewer at the file's end. False on errors.
+// Reads up to `size` bytes, fewer at the file's end. Returns false on errors.
 bool read_at(int file, std::uint64_t offset, std::size_t size, std::string& out) {
   out.resize(size);
   std::size_t done = 0;
@@ -165,7 +165,7 @@ void CheckpointFile::find_blocks() {
       blocks_.push_back({offset - size, size});
       end_ = offset;
     } else {
-      damaged_ = true;  // whether its length is right shows where the next block should begin
+      damaged_ = true;  // a wrong length shows up where the next block should begin
       if (blocks_.empty()) break;
     }
   }
@@ -180,7 +180,7 @@ std::string CheckpointFile::read(const Block& block) const {
 }
 
 void CheckpointFile::append(const std::string& content) {
-  // What is behind the end is damaged, and may be longer than the new block.
+  // Bytes after the end are damaged, and may be longer than the new block.
   const bool done = ::ftruncate(file_, static_cast<off_t>(end_)) == 0 &&
                     write_at(file_, end_, head_of(content)) &&
                     write_at(file_, end_ + head_size, content) && flush(file_);

@@ -13,7 +13,7 @@
 namespace surf::workflow {
 namespace {
 
-constexpr double spike_sigmas = 6;  // noise alone passes it once in a billion
+constexpr double spike_sigmas = 6;  // noise alone exceeds it once in a billion samples
 constexpr Limits widths = within(1, 2001);
 
 int odd(int width, const std::string& subject) {
@@ -25,7 +25,7 @@ int odd(int width, const std::string& subject) {
                    fmt::format("Give {}", width < 1 ? 3 : static_cast<int>(widths.high)));
 }
 
-/// "3:0.5nm", or "3".
+/// Reads "3:0.5nm" or "3".
 Spikes read_spikes(std::string_view text, const std::string& subject) {
   const std::size_t colon = std::min(text.find(':'), text.size());
   Spikes spikes;

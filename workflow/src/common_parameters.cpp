@@ -28,8 +28,8 @@ void describe_folder(ParameterVisitor& visit, std::filesystem::path& folder, con
       [&] { return folder.string(); },
       [&](std::string_view text, const std::string&) {
         folder = text;
-        while (folder.filename().empty() && folder.has_parent_path())
-          folder = folder.parent_path();  // result/
+        // Removes the slash of "result/".
+        while (folder.filename().empty() && folder.has_parent_path()) folder = folder.parent_path();
       });
 }
 

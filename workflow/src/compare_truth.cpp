@@ -15,7 +15,7 @@ namespace {
 constexpr std::int64_t least_pixels = 16;
 
 struct Differences {
-  HeightField less;  // surface less truth, valid where both are
+  HeightField less;  // surface minus truth, valid where both are
   double mean = 0, rms = 0;
   std::int64_t count = 0;
 };

@@ -5,14 +5,14 @@
 
 namespace surf::workflow {
 
-/// The reconstruction less the true heights, which are interpolated at its samples. Throws
-/// InvalidInput where the two have fewer than 16 places in common.
+/// Compares the reconstruction with the true heights, which are interpolated at its samples. Throws
+/// InvalidInput if the two have fewer than 16 places in common.
 TruthReport compare_with_truth(const Reconstruction& result, const HeightField& truth);
 
-/// The true heights on the samples of a surface, of the same frame; not valid beyond them.
+/// The true heights at the samples of a surface in the same frame; invalid beyond them.
 HeightField truth_on(const HeightField& surface, const HeightField& truth);
 
-/// Root mean square of what they differ by at places of the surface that both know, the mean
+/// Root mean square difference at the surface's samples that are valid in both, with the mean
 /// difference taken off.
 double rms_off(const HeightField& surface, const HeightField& truth);
 

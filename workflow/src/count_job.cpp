@@ -20,7 +20,7 @@ namespace surf::workflow {
 namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
-/// All trials are pixels of one scan so narrow that nothing differs between its ends.
+/// All trials are pixels of one scan. The scan is so narrow that its pixels do not differ.
 constexpr double scan_width_nm = 1e-6;
 constexpr double above_nm = 1e7;
 
@@ -36,14 +36,14 @@ void check(const CountJob& job) {
                        "Give 1 to 1e6");
 }
 
-/// The beam and the scan that stand still at a point of the scan plane.
+/// The beam and the scan at a fixed point of the scan plane.
 std::pair<mc::Beam, mc::Scan> aim(const CountJob& job) {
   mc::Beam beam = job.scene.beam;
   const mc::Scan scene_scan = resolve_scan(job.scene.scan, mc::extent(job.scene.specimen), beam);
   const Vec3 centre{scene_scan.center_x_nm, scene_scan.center_y_nm, scene_scan.center_z_nm};
   Vec3 point = centre;
   if (job.at_nm) {
-    // x and y turned with the beam, by the smallest rotation from -z, as the scan has them.
+    // The axes of the scan: x and y rotated with the beam, by the smallest rotation from -z.
     const Vec3 d = mc::direction(beam);
     const double k = 1 / (1 - d.z), dx = job.at_nm->first - centre.x,
                  dy = job.at_nm->second - centre.y;
@@ -113,7 +113,7 @@ CountSummary run(const CountJob& job, const Reporter& reporter) {
   double before = 0;
   for (std::size_t i = 0; i < job.electrons.size(); ++i) {
     options.budget = mc::ElectronsPerPixel{job.electrons[i]};
-    options.seed = job.seed + 0x9e3779b97f4a7c15u * i;  // sets are draws of their own
+    options.seed = job.seed + 0x9e3779b97f4a7c15u * i;  // sets share no random numbers
     const mc::SimulationResult result = mc::simulate(
         scene, options,
         {.watch = {

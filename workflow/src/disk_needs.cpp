@@ -36,7 +36,7 @@ std::string size_text(double bytes) {
                      : fmt::format("{:.3g} GB", bytes / 1e9);
 }
 
-// The nearest folder above that is there.
+// The nearest existing folder above.
 fs::path existing(fs::path folder) {
   std::error_code error;
   folder = fs::weakly_canonical(folder, error);

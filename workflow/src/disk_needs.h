@@ -9,13 +9,13 @@
 
 namespace surf::workflow {
 
-/// What a complete job takes of disks: its scratch files, checkpoint and outputs. Sizes are of
-/// uncompressed values; what is written with compression is smaller. `packed_bytes` of tallies: 0
-/// takes what they mostly are.
+/// The disk space of a complete job: its scratch files, checkpoint and outputs. Sizes are for
+/// uncompressed values; compressed files are smaller. `packed_bytes` is the serialized size of the
+/// tallies; 0 assumes a typical size.
 std::vector<DiskNeed> disk_needs(const ResolvedJob& job, const mc::Scan& scan,
                                  double packed_bytes = 0);
 
-/// Where a disk has not enough room for all of it, one warning for each such disk.
+/// One warning for each disk without enough room for all its files.
 std::vector<std::string> warn_of_full_disks(const std::vector<DiskNeed>& needs);
 
 }  // namespace surf::workflow

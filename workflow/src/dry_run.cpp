@@ -20,7 +20,7 @@
 namespace surf::workflow {
 namespace {
 
-// Bytes of a line such as "VmRSS:  1234 kB"; 0 where there is none.
+// The bytes in a line such as "VmRSS:  1234 kB"; 0 if there is no such line.
 double kilobytes_of(const char* file, const std::string& key) {
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);)
@@ -28,7 +28,7 @@ double kilobytes_of(const char* file, const std::string& key) {
   return 0;
 }
 
-// Beyond what scene and libraries take.
+// The memory besides scene and libraries.
 std::vector<MemoryNeed> memory_of_results(const ResolvedJob& job, const mc::Scan& scan) {
   std::vector<MemoryNeed> needs;
   const double pixels = static_cast<double>(scan.width) * scan.height;
@@ -44,8 +44,8 @@ std::vector<MemoryNeed> memory_of_results(const ResolvedJob& job, const mc::Scan
                            [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".vti") writing = std::max(writing, 8 * channels * pixels);
   }
-  constexpr double most_of_a_level =
-      256e6 * 1.05;  // larger ones are in scratch files (io/src/pyramid.cpp)
+  // Larger ones are in scratch files (io/src/raster/pyramid.cpp).
+  constexpr double most_of_a_level = 256e6 * 1.05;
   if (io::in_tiles(job.layout, {scan.width, scan.height}))
     for (double level = channels * pixels; level > 1e5; level /= 4)
       if (level <= most_of_a_level) writing += level;
@@ -89,8 +89,8 @@ DryRun dry_run(SimulateJob asked, int ranks, double seconds, const Reporter& rep
   out.memory.push_back({"specimen and program", std::max(0.0, now - scene_bytes - library_bytes)});
   for (const MemoryNeed& need : memory_of_results(job, out.scan)) out.memory.push_back(need);
   for (const MemoryNeed& need : out.memory) out.memory_bytes += need.bytes;
-  out.memory_bytes =
-      std::max(out.memory_bytes, kilobytes_of("/proc/self/status", "VmHWM:"));  // of reading
+  // Peak of reading the input.
+  out.memory_bytes = std::max(out.memory_bytes, kilobytes_of("/proc/self/status", "VmHWM:"));
   const MemoryThere there = memory_there();
   out.memory_there = there.limit.empty() ? HUGE_VAL : now + static_cast<double>(there.bytes);
   out.disk = disk_needs(job, out.scan, out.pilot.packed_bytes);

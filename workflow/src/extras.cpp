@@ -29,7 +29,7 @@ const Quantities& surface_quantities() {
   return all;
 }
 
-// How it was simulated; "variance_left" is one channel for each detector.
+// Channels about the simulation; "variance_left" is one channel for each detector.
 constexpr std::array<const char*, 3> simulation_quantities{"electrons", "model", "variance_left"};
 
 bool is_simulation_quantity(const std::string& name) {
@@ -54,7 +54,7 @@ struct PixelChannel {
   std::function<double(int x, int y)> value;
 };
 
-// Refers to `r`.
+// The result refers to `r`.
 std::vector<PixelChannel> simulation_channels(const Extras& extras, const mc::SimulationResult& r) {
   std::vector<PixelChannel> out;
   for (const char* wanted : simulation_quantities) {
@@ -84,7 +84,7 @@ std::string model_meanings() {
   return text;
 }
 
-// Channels after those that are there, a row at a time.
+// Appends channels to the image, read row by row.
 void append(ImageRows& image, std::vector<Channel> heads,
             std::function<void(std::size_t, int, std::span<float>)> read) {
   const std::size_t before = image.head.channels.size();

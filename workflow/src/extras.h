@@ -22,12 +22,12 @@ std::filesystem::path extra_path(const ResolvedJob& job, const char* extension);
 /// The files besides the image that a job writes.
 std::vector<std::filesystem::path> extra_files(const ResolvedJob& job);
 
-/// Adds the channels that are wanted besides the detectors'. What the numbers of materials and
-/// models mean goes into the metadata. Refers to `result`.
+/// Adds the requested channels besides the detectors'. The metadata get the meaning of the numbers
+/// of materials and models. `image` refers to `result`.
 void add_channels(const mc::Scene& scene, const ResolvedJob& job,
                   const mc::SimulationResult& result, ImageRows& image);
 
-/// Those among them whose values are numbers of something.
+/// The names of the added channels whose values are labels.
 std::vector<std::string> label_channels();
 
 /// The channels that `add_channels` adds.
@@ -49,10 +49,10 @@ class Deposits {
   std::vector<mc::EnergyDeposit> per_thread_;
 };
 
-/// Throws UsageError where tracks are wanted at a place outside the scan.
+/// Throws UsageError if tracks are requested at a place outside the scan.
 void check_trajectories(const ResolvedJob& job, const mc::Scan& scan);
 
-/// Simulates the tracks that are wanted, on their own, and writes them with a picture.
+/// Simulates the requested tracks, separately from the image, and writes them with a picture.
 void write_trajectories(const mc::Scene& scene, const ResolvedJob& job,
                         const std::map<std::string, std::string>& settings);
 

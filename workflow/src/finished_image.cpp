@@ -30,7 +30,7 @@ bool is_finished(const SimulateJob& job) {
     return title != image.metadata.end() && title->second == job.scene.title &&
            !image.metadata.contains("partial");
   } catch (const Error&) {
-    return false;  // damaged: it is made again
+    return false;  // damaged: the image is made again
   }
 }
 

@@ -7,12 +7,12 @@
 
 namespace surf::workflow {
 
-/// Gives a job the title "WHAT, FINGERPRINT": everything that determines its image is in the
-/// latter.
+/// Gives a job the title "WHAT, FINGERPRINT". The fingerprint covers everything that determines its
+/// image.
 void title_by_identity(SimulateJob& job, const std::string& what);
 
-/// Whether its first output is the finished image of a job with that title: it need not be made
-/// again.
+/// Whether the job's first output is the finished image of a job with that title, so that it need
+/// not be made again.
 bool is_finished(const SimulateJob& job);
 
 }  // namespace surf::workflow

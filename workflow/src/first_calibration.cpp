@@ -17,14 +17,14 @@
 namespace surf::workflow {
 namespace {
 
-constexpr double telling_share = 1e-3;  // of the pixels, at one value
-constexpr double telling_step = 3;      // times as many as at the next value
+constexpr double telling_share = 1e-3;  // share of the pixels at one value
+constexpr double telling_step = 3;      // ratio to the pixels at the next value
 constexpr double least_overlap_px = 256;
-constexpr double changed = 0.1;  // of a gain or of the noise's variance
+constexpr double changed = 0.1;  // relative change of a gain or of the noise's variance
 
 struct Extreme {
   double value = 0;
-  std::int64_t count = 0, next = 0;  // at it, and at the value next to it
+  std::int64_t count = 0, next = 0;  // pixels at this value, and at the adjacent value
 };
 
 Extreme extreme(const PlacedImage& image, bool largest) {
@@ -44,7 +44,7 @@ Extreme extreme(const PlacedImage& image, bool largest) {
   return e;
 }
 
-/// The mean that gains and offset give.
+/// The mean image: predicted channels times gains, plus offset.
 Grid<double> mean_of(const ModelImages& predicted, const std::vector<double>& gains,
                      double offset) {
   Grid<double> mean(predicted.front().width(), predicted.front().height(), offset);
@@ -62,7 +62,7 @@ double variance_of(const Grid<double>& values, const Mask& used) {
   return count > 1 ? std::max(squared / count - sum / count * (sum / count), 0.0) : 0;
 }
 
-/// Values that these shares of the image lie below.
+/// The grey levels below which these shares of the image lie.
 std::vector<double> levels_of(const Grid<double>& image, std::initializer_list<double> shares) {
   std::vector<double> values = image.data(), levels;
   for (const double share : shares) {
@@ -74,7 +74,7 @@ std::vector<double> levels_of(const Grid<double>& image, std::initializer_list<d
   return levels;
 }
 
-/// From flat places, where there are some.
+/// Estimates the noise from flat places, if there are any.
 void find_noise(const PlacedImage& sem, const std::optional<SemNoise>& given,
                 FirstCalibration& first) {
   if (given) {
@@ -89,7 +89,7 @@ void find_noise(const PlacedImage& sem, const std::optional<SemNoise>& given,
     first.noise_from = fmt::format("{} flat places of the image",
                                    std::ranges::count_if(estimate.points, &NoisePoint::used));
     first.warnings = estimate.warnings;
-  } catch (const InvalidInput&) {  // no flat places: from residuals then
+  } catch (const InvalidInput&) {  // no flat places: the noise is estimated from residuals later
   }
 }
 
@@ -116,13 +116,15 @@ Calibration fitted(const CalibrationImages& images, FirstCalibration& first) {
   return fit;
 }
 
-/// What a coarse reconstruction leaves is noise, and what model and surface are off by, most of it
-/// on walls. A line through squared residuals follows a few bright walls, or is so uncertain for
-/// their sake that it is level. So the line is that of differences between neighbours.
+/// The noise in the residual of a coarse reconstruction. The residual also holds the errors of
+/// model and surface, mostly on walls. A line fitted to squared residuals follows a few bright
+/// walls, or becomes so uncertain because of them that it is level. So the line is fitted to
+/// differences between neighbours.
 SemNoise noise_left(const CalibrationImages& images, const Grid<double>& mean) {
   try {
     return noise_of_residuals(images.real, mean, images.used);
-  } catch (const InvalidInput&) {  // too small, or noise finer than the grey levels
+    // The image is too small, or the noise is finer than the grey levels.
+  } catch (const InvalidInput&) {
     return fit_sem_noise(images.real, mean, images.used).noise;
   }
 }
@@ -233,7 +235,7 @@ bool calibrate_again(const PlacedImage& sem, const HeightField& surface, const I
   if (!fix_noise) {
     first.noise = noise_left(images, mean);
     first.noise_from = "what a first reconstruction leaves of the image";
-    first.warnings.clear();  // of the noise before
+    first.warnings.clear();  // these are about the earlier noise estimate
   }
   const auto differs = [](double a, double b) {
     return std::abs(a - b) > changed * std::max(std::abs(a), std::abs(b));

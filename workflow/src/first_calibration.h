@@ -12,36 +12,36 @@
 
 namespace surf::workflow {
 
-/// Marks pixels at the least or the largest value as not valid where so many share it that the
-/// detector must have been at its limit: over 0.1 % of the image, and over three times as many as
-/// at the next value. Returns how many were.
+/// Marks saturated pixels as invalid: pixels at the smallest or the largest value, if more than 0.1
+/// % of the image share it, and more than three times as many as share the next value. Returns
+/// their number.
 std::int64_t leave_out_saturated(PlacedImage& image);
 
-/// Gains, offset and noise that the reconstruction begins with.
+/// The initial gains, offset and noise of the reconstruction.
 struct FirstCalibration {
   std::vector<double> gains;
   double offset = 0;
-  std::optional<Calibration> fit;  ///< absent: given
+  std::optional<Calibration> fit;  ///< absent: the calibration was given
   SemNoise noise;
   std::string noise_from;
-  bool tied = false;   ///< the channels cannot be told apart: their gains are kept equal
+  bool tied = false;   ///< the channels cannot be told apart, so their gains are kept equal
   double overlap = 1;  ///< share of the SEM pixels that lie on the scan
   std::vector<std::string> warnings;
 };
 
-/// The image that the model predicts of the eroded scan where the map lays it, against the real
-/// one; weights from the noise. Gains that come out below 0 or doubtful are fitted again as one for
-/// all channels. Without `eroded` the calibration must be given. Throws InvalidInput where the
-/// images do not overlap, or the real one has nothing of the simulated one.
+/// Fits the image that the model predicts from the eroded scan, mapped to the SEM image, to the
+/// real image; weights follow from the noise. If a gain is below 0 or doubtful, one gain for all
+/// channels is fitted instead. Without `eroded` the calibration must be given. Throws InvalidInput
+/// if the images do not overlap, or if the real image has nothing in common with the simulated one.
 FirstCalibration calibrate_first(const PlacedImage& sem, const HeightField* eroded,
                                  const ImageModel& model, const Affine& sem_to_afm,
                                  const std::optional<GivenCalibration>& given,
                                  const std::optional<SemNoise>& noise, int threads);
 
-/// Both again, from a surface in the SEM's frame that is nearer to the true one than the eroded
-/// scan: the noise from what the surface leaves of the image, so that it holds at all grey levels
-/// and what the model is off by counts. What is given (`fix_gains`, `fix_noise`) stays. Returns
-/// whether anything changed by more than a tenth.
+/// Repeats the calibration and the noise estimate with a surface in the SEM's frame that is closer
+/// to the true one than the eroded scan. The noise is estimated from the residual of the image, so
+/// that it holds at all grey levels and includes the model's error. Given values (`fix_gains`,
+/// `fix_noise`) are kept. Returns whether anything changed by more than a tenth.
 bool calibrate_again(const PlacedImage& sem, const HeightField& surface, const ImageModel& model,
                      bool fix_gains, bool fix_noise, int threads, FirstCalibration& first);
 

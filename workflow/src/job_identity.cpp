@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* geometry_key = "geometry";
 constexpr const char* program_key = "program";
-constexpr std::size_t longest_value = 40;  // of what is shown to people
+constexpr std::size_t longest_value = 40;  // characters of a value in a message
 
 template <class T>
 std::string hash_of(const std::vector<T>& values) {
@@ -93,7 +93,7 @@ std::string difference(const Identity& there, const Identity& here) {
       if (a == there.end() || b == here.end() || a->second != b->second) keys.insert(key);
     }
   if (keys.empty()) return "";
-  // Hashes say little to people: only where nothing else differs.
+  // Hashes mean little to people: they are named only if nothing else differs.
   std::set<std::string> telling = keys;
   telling.erase(geometry_key);
   telling.erase(program_key);

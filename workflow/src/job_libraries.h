@@ -8,7 +8,7 @@
 
 namespace surf::workflow {
 
-/// The cache's libraries, with the job's own progress.
+/// The libraries of the cache, with the job's own progress and notes.
 class JobLibraries : public mc::LibrarySource {
  public:
   JobLibraries(const std::filesystem::path& folder, ProgressCallback progress, NoteCallback note)

@@ -11,7 +11,7 @@ namespace surf::workflow {
 int processes_started() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_SIZE"})
     if (const char* value = std::getenv(name)) return std::atoi(value);
-  // Slurm sets it for programs that are not of MPI, too: one task is nobody else.
+  // Slurm also sets SLURM_NTASKS for programs without MPI: with one task this process is alone.
   if (std::getenv("PMIX_RANK") || std::getenv("PMI_RANK"))
     if (const char* value = std::getenv("SLURM_NTASKS")) return std::atoi(value);
   return 1;

@@ -12,7 +12,8 @@
 namespace surf::workflow {
 namespace {
 
-constexpr std::int64_t usual_cascades = 10240;  // as simulations take: they are in the cache then
+// The number used by simulations, so that the cache often has them.
+constexpr std::int64_t usual_cascades = 10240;
 
 void check(const TrainJob& job) {
   if (job.spot_nm > 0)
@@ -41,7 +42,7 @@ std::map<std::string, std::string> notes_of(const TrainJob& job,
           {"table.electrons", std::to_string(library.cascades())}};
 }
 
-// Secondaries that stop above the surface are far more than those that leave: level ground sets
+// Far more secondaries stop above the surface than leave it, so the yields of level ground set
 // their scale.
 Learnt learn_stopping_points(const Lesson& lesson) {
   const TrainJob& job = lesson.job;

@@ -7,8 +7,8 @@
 namespace surf::workflow {
 namespace {
 
-// The forms are fixed functions of slope: all that is learnt is what a level surface gives, by
-// least squares over all pixels, weighted by their standard errors.
+// The forms are fixed functions of slope. Only the yields of a level surface are fitted, by least
+// squares over all pixels, weighted by their standard errors.
 Learnt learn(const Lesson& lesson, SlopeForm form) {
   SlopeModelParameters parameters;
   parameters.form = form;

@@ -41,7 +41,7 @@ void refuse_options(const Learner& learner, const LearnOptions& o) {
   }
 }
 
-// What only images would be for.
+// Refuses options that only apply to training from images.
 void refuse_learning_from_images(const Learner& learner, const TrainJob& job) {
   if (job.held_out > 0)
     throw UsageError(

@@ -18,7 +18,7 @@ struct CachedLibraries::Impl {
       : cache(std::move(folder), max_bytes) {}
 
   io::Cache cache;
-  std::map<std::string, mc::CascadeLibrary> kept;  ///< by the key of their first page
+  std::map<std::string, mc::CascadeLibrary> kept;  ///< by key of the first page
   Pages pages;
   std::vector<std::string> notes;
   std::set<std::string> said;
@@ -35,7 +35,7 @@ struct CachedLibraries::Impl {
     return false;
   }
 
-  /// Adds the next page from the cache; false where there is none that counts.
+  /// Adds the next page from the cache; false if there is no valid page.
   bool load(mc::CascadeLibrary& library) {
     const std::size_t number = library.pages();
     const auto bytes = cache.load(mc::cascade_page_key(library.settings(), number));

@@ -11,7 +11,7 @@ namespace surf::workflow {
 
 namespace {
 
-// The packing of cascades counts on it too.
+// The format of cascades relies on it too.
 static_assert(std::endian::native == std::endian::little);
 
 using Header = std::array<std::uint64_t, 2>;
@@ -40,7 +40,7 @@ std::optional<mc::CascadePage> page_from_bytes(std::span<const std::byte> bytes)
   std::memcpy(header.data(), bytes.data(), sizeof header);
   bytes = bytes.subspan(sizeof header);
   const auto [starts, words] = header;
-  // By division, which cannot overflow.
+  // Compared by division, which cannot overflow.
   if (words > bytes.size() / word_bytes || starts > bytes.size() / start_bytes ||
       words * word_bytes + starts * start_bytes != bytes.size())
     return std::nullopt;

@@ -18,8 +18,8 @@ namespace surf::workflow {
 
 namespace {
 
-constexpr std::size_t most_materials = 8;      // colours
-constexpr std::size_t most_distributions = 8;  // in one panel
+constexpr std::size_t most_materials = 8;      // number of colours
+constexpr std::size_t most_distributions = 8;  // distributions in one panel
 constexpr std::size_t bins = 40;
 constexpr double percentile = 0.95;
 
@@ -41,7 +41,7 @@ double percentile_of(std::vector<double> values) {
   return *at;
 }
 
-// What was found out about one material at one energy.
+// The results for one material at one energy.
 struct Findings {
   std::size_t material = 0;
   double energy_ev = 0;
@@ -77,7 +77,7 @@ class Charts {
  private:
   bool several() const { return options_.energies_ev.size() > 1; }
 
-  // A logarithmic axis needs more than a decade, or hardly any number is on it.
+  // A logarithmic axis needs more than a decade to show several numbers.
   io::PlotAxis energy_axis() const {
     const auto [low, high] =
         std::minmax_element(options_.energies_ev.begin(), options_.energies_ev.end());
@@ -92,7 +92,8 @@ class Charts {
     return several() ? fmt::format("{}, {}", material, energy_text(f.energy_ev)) : material;
   }
 
-  // Few enough to tell apart: of each material the same energies, from first to last.
+  // A subset that is small enough to distinguish: the same energies for each material, from first
+  // to last.
   std::vector<const Findings*> chosen() const {
     const std::size_t energies = options_.energies_ev.size();
     const std::size_t each =
@@ -117,7 +118,7 @@ class Charts {
       low = std::min(low, *least);
       high = std::max(high, *most);
     }
-    // Ranges of energies far apart only share a logarithmic axis.
+    // Energies far apart have such different ranges that they need a logarithmic axis.
     double least_mean = 1e300, greatest_mean = 0;
     for (const Findings* f : chosen()) {
       least_mean = std::min(least_mean, mean(f->*values));
@@ -138,7 +139,7 @@ class Charts {
       series.y.assign(bins, 0);
       for (const double v : f->*values) {
         const auto above = std::upper_bound(edges.begin(), edges.end(), v) - edges.begin();
-        if (above == 0) continue;  // before a logarithmic axis begins
+        if (above == 0) continue;  // a logarithmic axis has no place for it
         const auto bin = std::min<std::ptrdiff_t>(above - 1, bins - 1);
         series.y[static_cast<std::size_t>(bin)] += 100.0 / static_cast<double>((f->*values).size());
       }
@@ -225,7 +226,7 @@ class Charts {
     series.y_error.push_back(e.standard_error);
   }
 
-  // Those of normal incidence in the range of energies shown.
+  // The measured yields at normal incidence in the range of energies shown.
   io::PlotSeries measurements(std::size_t m, bool backscattered) const {
     io::PlotSeries series;
     if (std::find(tilts_deg_.begin(), tilts_deg_.end(), 0.0) == tilts_deg_.end()) return series;
@@ -264,18 +265,18 @@ void check(const LibraryPlotOptions& o) {
   if (o.cascades < 1) throw UsageError("`library.cascades`", "there are none", "Ask for 10000");
 }
 
-// Of one pixel, averaged over all of a library of about this size.
+// Options for one pixel, averaged over a whole library of about this size.
 mc::SimulationOptions simulation_of(const LibraryPlotOptions& o) {
   mc::SimulationOptions options;
   options.method = mc::Method::replay;
   options.budget = mc::Accuracy{std::min(1.0, 3 / std::sqrt(static_cast<double>(o.cascades)))};
-  options.library_memory = 0;  // no more than that
+  options.library_memory = 0;  // no larger library
   options.seed = o.seed;
   options.threads = o.threads;
   return options;
 }
 
-// Yields of a flat specimen, on average over all of the library's cascades.
+// Finds the yields of a flat specimen, averaged over all cascades of the library.
 void find_yields(const LibraryPlotOptions& o, double tilt_deg, mc::LibrarySource& libraries,
                  Findings& findings) {
   mc::Specimen specimen;

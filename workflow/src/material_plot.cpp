@@ -18,7 +18,7 @@ namespace {
 constexpr double lowest_ev = 20, highest_ev = 3e4;  // above the vacuum level
 constexpr int per_decade = 24;
 constexpr double yield_energies_ev[] = {200, 300, 500, 800, 1000, 1500, 2000, 3000, 5000, 10000};
-constexpr double least_elf = 1e-7;  // what is smaller is not drawn
+constexpr double least_elf = 1e-7;  // smaller values are not drawn
 
 std::vector<double> energies_ev() {
   std::vector<double> out;
@@ -36,7 +36,7 @@ io::PlotPanel panel(const char* title, const char* y) {
   return p;
 }
 
-// Of what is positive: the axes are logarithmic.
+// Draws the positive values: the axes are logarithmic.
 template <class F>
 void draw(io::PlotPanel& panel, const char* name, const std::vector<double>& x, const F& f) {
   io::PlotSeries series;
@@ -75,7 +75,7 @@ mc::Physics physics_of(const char* text) {
   return physics;
 }
 
-// Yields of a plane across the beam by both tiers.
+// The yields of a plane normal to the beam, by both tiers.
 io::PlotPanel yields(const mc::Material& material, const MaterialPlotOptions& options) {
   io::PlotPanel p;
   p.title = "Yields of a plane";
@@ -116,8 +116,8 @@ io::Plot plot_material(const mc::Material& material, const MaterialPlotOptions& 
   const mc::FullPenn full(data);
   const mc::SinglePole pole(data.elf, data.band);
   const std::vector<double> x = energies_ev();
-  // The same electron inside: the tiers count from the bottom of the conduction band, and from that
-  // of the filled band.
+  // The same electron inside the material. The tiers count energies from the bottom of the
+  // conduction band and from that of the filled band.
   const auto inside = [&](double energy_ev) { return energy_ev + material.barrier_ev; };
   const auto in_band = [&](double energy_ev) { return energy_ev + data.barrier_ev(); };
 

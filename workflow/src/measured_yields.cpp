@@ -28,7 +28,7 @@ class Table {
     fields_ = io::split_csv_line(line);
     number_ = number;
   }
-  // Empty where the line ends before it.
+  // The field of a column; empty if the line ends before it.
   std::string text(const char* name) const {
     const std::size_t i = column(name);
     return i < fields_.size() ? fields_[i] : std::string();

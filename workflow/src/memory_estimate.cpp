@@ -23,13 +23,15 @@ namespace {
 namespace fs = std::filesystem;
 
 // Measured with the version of Embree in Debian 12, bytes per triangle.
-constexpr double per_body = 58;   // as read 24, as traced 24 + 6 in single precision, shells 4
+constexpr double per_body = 58;   // 24 as read, 24 as traced + 6 in single precision, 4 for shells
 constexpr double per_field = 46;  // a grid is smaller
-constexpr double per_soup = 165;  // while STL is read: the file, corners, who is who
-constexpr double per_built_tree = 100;  // Embree's while it is built; half of it stays
-constexpr double per_faces = 48, per_faces_and_thread = 4;  // distance bounds, while they are made
+// While STL is read: the file, the corners, the map of equal corners.
+constexpr double per_soup = 165;
+constexpr double per_built_tree = 100;  // Embree's tree while it is built; half of this remains
+// Distance bounds, while they are computed.
+constexpr double per_faces = 48, per_faces_and_thread = 4;
 constexpr std::size_t program_bytes = std::size_t{180} << 20;
-constexpr double share_to_take = 0.97;  // of what there is
+constexpr double share_to_take = 0.97;  // share of the available memory
 constexpr std::uint64_t few_triangles = 100000;
 
 constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
@@ -58,8 +60,8 @@ std::optional<std::size_t> amount(const fs::path& path) {
   return number_after(text, "");  // "max" is none
 }
 
-// The least that this group and those above it leave; a group may be read as one with fewer parts
-// above it than there are, where only a part of the tree is to be seen.
+// Finds the least memory that this group and the groups above it leave. The path may have more
+// parts than the visible tree, if only a part of the tree is mounted.
 void ask_groups(const fs::path& root, std::string group, const char* limit, const char* used,
                 const char* cache, std::size_t& least) {
   for (;;) {
@@ -128,7 +130,7 @@ std::optional<TriangleCount> triangles_in(const fs::path& path) {
   std::error_code error;
   double size = 0;
   for (const fs::path& part :
-       io::mesh_input_files(path)) {  // of some formats the triangles are in others
+       io::mesh_input_files(path)) {  // some formats have their triangles in other files
     const auto bytes = fs::file_size(part, error);
     if (error) return {};
     size += static_cast<double>(bytes);
@@ -140,13 +142,13 @@ std::optional<TriangleCount> triangles_in(const fs::path& path) {
   };
   if (head.starts_with("ply")) {
     const auto faces = number_after(head, "element face");
-    // No face of a file is smaller than four bytes.
+    // No face takes less than four bytes in a file.
     return TriangleCount{
         static_cast<std::uint64_t>(std::min<double>(double(faces.value_or(0)), size / 4))};
   }
   if (head.size() > 84) {
     std::uint32_t facets = 0;
-    std::memcpy(&facets, head.data() + 80, sizeof facets);  // little-endian, as we are
+    std::memcpy(&facets, head.data() + 80, sizeof facets);  // little-endian, like this machine
     if (size == 84 + 50.0 * facets) return TriangleCount{facets, TriangleSource::soup};
   }
   std::string extension = path.extension().string();
@@ -156,7 +158,7 @@ std::optional<TriangleCount> triangles_in(const fs::path& path) {
     return about(260, TriangleSource::soup);
   if (extension == ".obj" || extension == ".off") return about(38, TriangleSource::mesh);
   if (extension == ".vtp" || extension == ".vtm") return about(30, TriangleSource::mesh);
-  if (extension == ".3mf") return about(8, TriangleSource::mesh);  // packed
+  if (extension == ".3mf") return about(8, TriangleSource::mesh);  // compressed
   return about(18, TriangleSource::mesh);                          // glTF
 }
 
@@ -192,8 +194,8 @@ void require_memory(const std::string& subject, const TriangleCount& count, cons
   const auto needed = static_cast<double>(estimate_specimen(count, use).total());
   const MemoryThere there = memory_there();
   if (there.bytes == no_limit || needed <= share_to_take * static_cast<double>(there.bytes)) return;
-  const bool small =
-      count.triangles < few_triangles;  // the program itself is what takes the memory
+  // The program itself takes most of the memory.
+  const bool small = count.triangles < few_triangles;
   const std::string triangles =
       small ? std::string("this mesh and the program")
             : fmt::format("{:.3g} million triangles", double(count.triangles) / 1e6);

@@ -8,7 +8,7 @@
 
 namespace surf::workflow {
 
-/// What the module `mpi` gives.
+/// The function table of the module `mpi`.
 struct MpiLibrary {
   static constexpr ModuleName module{"mpi", "shares a job between processes",
                                      "MPI (Debian: libopenmpi3)", 300};

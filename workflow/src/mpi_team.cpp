@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The module `mpi`: the only source that knows MPI.
+// The module `mpi`, the only source that uses MPI.
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1
 #include <fmt/format.h>
@@ -36,22 +36,23 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// From those who follow: how many units they want, what became of them, that they have no more,
-// what went wrong. From the leader: numbers of units.
+// Messages from followers: the number of units wanted, the result of a unit, the end of their work,
+// an error. Messages from the leader: numbers of units.
 enum Tag : int { wants = 1, tally, finished, failed, units };
 
 constexpr std::uint64_t no_more = ~std::uint64_t{0};
 constexpr std::size_t largest_part = std::size_t{1} << 30;  // MPI counts in int
-// Looking for messages costs tens of microseconds: the longer none has come, the longer it waits
-// for the next. A unit of work takes longer than this, and others ask for more before they have
-// none.
+// Probing for messages costs tens of microseconds. The longer no message has come, the longer the
+// process sleeps between probes. A unit of work takes longer than these sleeps, and followers ask
+// for more units before they run out.
 constexpr std::chrono::microseconds shortest_nap(50), longest_nap(5000);
 constexpr std::chrono::microseconds longest_nap_sending(
     1000);  // large messages need both sides awake
-constexpr auto between_looks = std::chrono::milliseconds(20);  // at whether the job is cancelled
+// Checks whether the job is cancelled.
+constexpr auto between_looks = std::chrono::milliseconds(20);
 constexpr auto awake = std::chrono::milliseconds(1);
-// After the leader was told to stop, how long it waits for what others have begun. Starters of MPI
-// kill everybody a second or so after one has died.
+// After a cancellation the leader waits this long for units that others have begun. MPI launchers
+// kill all processes about a second after one has died.
 constexpr auto patience = std::chrono::milliseconds(700);
 
 void sleep_longer(std::chrono::microseconds& nap, std::chrono::microseconds longest = longest_nap) {
@@ -61,7 +62,7 @@ void sleep_longer(std::chrono::microseconds& nap, std::chrono::microseconds long
 
 double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
-// Adds to a sum what this thread has computed meanwhile: waiting for others costs nothing.
+// Adds to a sum the processor time of this thread; waiting costs nothing.
 class ThreadTime {
  public:
   explicit ThreadTime(double& sum) : sum_(sum), start_(now()) {}
@@ -85,7 +86,7 @@ std::string host() {
 }
 
 // Waits for a collective call without keeping a processor busy, as MPI's own waiting does: the
-// leader may be at work for minutes. What comes at once is not slept over.
+// leader may be at work for minutes. It sleeps only if the call does not complete at once.
 template <class Begin>
 void await(const Begin& begin) {
   MPI_Request request;
@@ -101,8 +102,8 @@ void await(const Begin& begin) {
   }
 }
 
-// The processes of one machine: memory from MPI's windows, or a copy for each where they cannot be
-// had.
+// The processes of one machine. They share memory through MPI's windows, or each has a copy if
+// windows are unavailable.
 class MpiNode : public NodeMemory {
  public:
   MpiNode() {
@@ -111,7 +112,7 @@ class MpiNode : public NodeMemory {
     MPI_Comm_rank(comm_, &rank_);
     MPI_Comm_size(comm_, &size_);
   }
-  // By all at once.
+  // Called by all processes at once.
   void leave() {
     for (Window& w : windows_) MPI_Win_free(&w.window);
     MPI_Comm_free(&comm_);
@@ -132,7 +133,8 @@ class MpiNode : public NodeMemory {
     Window w;
     void* mine = nullptr;
     const auto size = static_cast<MPI_Aint>(is_first() ? bytes + alignment : 0);
-    // Asked beforehand: where the first one cannot have it, Open MPI leaves the others waiting.
+    // Checked beforehand: if the first process cannot allocate it, Open MPI leaves the others
+    // waiting.
     int room = is_first() && has_room(bytes + alignment);
     await([&](MPI_Request* r) { MPI_Ibcast(&room, 1, MPI_INT, 0, comm_, r); });
     int good = room && MPI_Win_allocate_shared(size, 1, MPI_INFO_NULL, comm_, &mine, &w.window) ==
@@ -183,15 +185,15 @@ class MpiNode : public NodeMemory {
     }
   }
 
-  // Open MPI's windows are files there, of five percent more.
+  // Open MPI's windows are files in /dev/shm that are five percent larger.
   static bool has_room(std::size_t bytes) {
     struct statvfs s {};
-    if (statvfs("/dev/shm", &s) != 0) return true;  // elsewhere, then
+    if (statvfs("/dev/shm", &s) != 0) return true;  // then windows are elsewhere
     return static_cast<double>(s.f_bavail) * static_cast<double>(s.f_frsize) >
            1.06 * static_cast<double>(bytes) + 1e6;
   }
 
-  // Windows are freed by all together: those that nobody holds any more.
+  // Frees the windows that no process holds any more. All processes free a window together.
   void free_unused() {
     std::vector<Window> kept;
     for (Window& w : windows_) {
@@ -224,9 +226,10 @@ class MpiTeam : public Team {
   }
 
   ~MpiTeam() override {
-    if (deaf_) MPI_Abort(MPI_COMM_WORLD, 130);  // who does not answer would be waited for
-    await(
-        [](MPI_Request* r) { MPI_Ibarrier(MPI_COMM_WORLD, r); });  // more quietly than what follows
+    // MPI_Finalize would wait for processes that do not answer.
+    if (deaf_) MPI_Abort(MPI_COMM_WORLD, 130);
+    // Waits without using the processor, unlike the calls below.
+    await([](MPI_Request* r) { MPI_Ibarrier(MPI_COMM_WORLD, r); });
     node_->leave();
     MPI_Finalize();
   }
@@ -274,8 +277,7 @@ class MpiTeam : public Team {
     const ThreadTime time(own().messaging_s);
     int at_work = size_ - 1;
     std::string trouble;
-    std::exception_ptr
-        thrown;  // what `give` has thrown: others are told to end before anything else
+    std::exception_ptr thrown;  // exception of `give`; the others are told to end first
     Clock::time_point stopped{};
     auto nap = shortest_nap;
     while (at_work > 0) {
@@ -383,14 +385,14 @@ class MpiTeam : public Team {
   }
 
  private:
-  // Between the thread that sends and receives and those that simulate.
+  // The queue between the thread that exchanges messages and the threads that simulate.
   struct Desk {
     std::mutex mutex;
-    std::condition_variable changed;  // for those who simulate
-    std::condition_variable news;     // for the other
+    std::condition_variable changed;  // for the simulating threads
+    std::condition_variable news;     // for the messaging thread
     std::deque<std::size_t> in;
     std::deque<FinishedUnit> out;
-    std::size_t ahead = 0, takers = 0;  // takers: who wait for a unit
+    std::size_t ahead = 0, takers = 0;  // takers: threads that wait for a unit
     bool closed = false, left = false;
     double waiting_s = 0;
 
@@ -474,12 +476,12 @@ class MpiTeam : public Team {
         continue;
       }
       const bool sent = all_sent();
-      if (all_done && !asked) return;  // the rest is waited for with what is said last
+      if (all_done && !asked) return;  // the rest is awaited together with the last message
       if (asked || !sent) {
         sleep_longer(nap, sent ? longest_nap : longest_nap_sending);
         continue;
       }
-      std::unique_lock lock(desk.mutex);  // nothing comes that was not asked for
+      std::unique_lock lock(desk.mutex);  // only requested messages come
       desk.news.wait_for(lock, between_looks,
                          [&] { return !desk.out.empty() || desk.left || desk.has_few(); });
     }
@@ -498,7 +500,7 @@ class MpiTeam : public Team {
          units, to);
   }
 
-  // Does not wait for the other side, which may be asleep: MPI would look for it all the while.
+  // Does not wait for the receiver, which may be asleep: MPI would poll for it all the time.
   void send(std::string bytes, Tag tag, int to) {
     ++own().messages;
     if (to == 0) own().bytes_sent += static_cast<std::int64_t>(bytes.size());
@@ -550,7 +552,7 @@ class MpiTeam : public Team {
     MPI_Request request;
     std::string bytes;
   };
-  std::list<Sending> sending_;  // their places stay as they are
+  std::list<Sending> sending_;  // elements keep their addresses
   int rank_ = 0, size_ = 1;
   bool deaf_ = false;
   std::optional<MpiNode> node_;

@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double much = 0.001;  // share of the samples that is worth a warning
+constexpr double much = 0.001;  // share of the samples that justifies a warning
 
 void check_outputs(const PredictJob& job, const Image& like) {
   if (job.outputs.empty()) return;
@@ -40,7 +40,7 @@ void check_outputs(const PredictJob& job, const Image& like) {
   }
 }
 
-/// Without the heights.
+/// The job without the heights.
 PredictJob parameters_of(const PredictJob& job) {
   PredictJob out;
   out.edge = job.edge;
@@ -51,7 +51,7 @@ PredictJob parameters_of(const PredictJob& job) {
   return out;
 }
 
-/// Who the heights are, for messages.
+/// The name of the heights, for messages.
 std::string name_of(const PredictJob& job) {
   return job.input.empty() ? "HEIGHTS" : job.input.string();
 }

@@ -85,10 +85,10 @@ std::vector<InputHash> hash_inputs(const std::vector<std::filesystem::path>& inp
 }
 
 Metadata parameters_of(const ResolvedJob& job) {
-  mc::SimulationRequest request = job.scene;  // with what was found of it
+  mc::SimulationRequest request = job.scene;  // with the values that were found
   request.method = job.options.method;
   request.budget = job.options.budget;
-  request.detectors.clear();  // all are named by themselves
+  request.detectors.clear();  // detectors are described separately
   request.scan = {};
   return surf::record_of(request);
 }
@@ -120,7 +120,7 @@ Metadata provenance(const ResolvedJob& job, const mc::Scan& scan,
   number = 0;
   for (const mc::Detector& d : job.options.detectors)
     out[fmt::format("detector.{}", ++number)] = mc::format_detector(d);
-  // Where energy is watched tracks are followed to their end, with other random numbers.
+  // With deposited energy, tracks are followed to their end, with other random numbers.
   if (job.extras.deposit_cells > 0)
     out["output.deposit"] = std::to_string(job.extras.deposit_cells);
   return out;

@@ -17,21 +17,20 @@ struct InputHash {
 
 std::vector<InputHash> hash_inputs(const std::vector<std::filesystem::path>& inputs);
 
-/// Those of the request that changed the result, with the values that were used, under their keys:
-/// "beam.energy_ev". Specimen, scan and detectors are named by themselves.
+/// The parameters of the request that affected the result, with the values used, under their keys:
+/// "beam.energy_ev". Specimen, scan and detectors are described elsewhere.
 std::map<std::string, std::string> parameters_of(const ResolvedJob& job);
 
-/// Everything that changes the result, as an image's metadata: nothing here may depend on threads,
-/// tiles, hosts, clocks, or on the folders that inputs and outputs are in.
+/// Everything that affects the result, as an image's metadata. Nothing here may depend on threads,
+/// tiles, hosts, clocks, or the folders of inputs and outputs.
 std::map<std::string, std::string> provenance(const ResolvedJob& job, const mc::Scan& scan,
                                               const std::vector<InputHash>& inputs);
 
-/// What was asked of the files: channels, layout, tracks. Work that is gone on with does not depend
-/// on it.
+/// The settings of the output files: channels, layout, tracks. A continued job may change them.
 std::map<std::string, std::string> output_settings(const ResolvedJob& job);
 
-/// What a finished simulation adds: its balance, libraries, how pixels were simulated, warnings
-/// and, when cancelled, that it is partial.
+/// The metadata added by a finished simulation: its balance, libraries, how pixels were simulated,
+/// warnings and, if cancelled, that it is partial.
 std::map<std::string, std::string> outcome(const SimulateSummary& summary);
 
 }  // namespace surf::workflow

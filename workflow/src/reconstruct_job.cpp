@@ -27,7 +27,7 @@
 namespace surf::workflow {
 namespace {
 
-constexpr int coarse_iterations = 12;  // of each scale of a reconstruction to calibrate with
+constexpr int coarse_iterations = 12;  // per scale, of a coarse reconstruction for the calibration
 constexpr double least_deviation = 0.9, largest_deviation = 1.15,
                  largest_correlation = 0.1;  // of whitened residuals
 
@@ -45,13 +45,13 @@ std::string text_of(const std::vector<double>& values) {
 
 std::string map_text(const Affine& m) { return text_of({m.xx, m.xy, m.x0, m.yx, m.yy, m.y0}); }
 
-/// All that the states of the reconstruction depend on.
+/// Everything that the states of the reconstruction depend on.
 Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const SemData* sem,
                      const StoredModel* model) {
   Identity id{{"semsurf", version()},
               {"program", program_hash()},
               {"instruction set", std::string(instruction_set())}};
-  ReconstructionOptions steps = o;  // without what comes after them
+  ReconstructionOptions steps = o;  // without options of the final steps, which follow the states
   steps.uncertainty = ReconstructionOptions{}.uncertainty;
   steps.probes = ReconstructionOptions{}.probes;
   steps.seed = ReconstructionOptions{}.seed;
@@ -104,14 +104,14 @@ std::string seen(const ResidualReport& r) {
       r.mean, r.deviation, r.along, r.across);
 }
 
-/// Stricter than chance alone: what is wrong by less changes heights by less than their standard
-/// deviations.
+/// The limits are wider than chance alone: smaller errors change heights by less than their
+/// standard deviations.
 bool like_noise(const ResidualReport& r) {
   return r.like_noise && r.deviation >= least_deviation && r.deviation <= largest_deviation &&
          std::max(std::abs(r.along), std::abs(r.across)) <= largest_correlation;
 }
 
-/// What speaks against trusting the result.
+/// Reasons against trusting the result.
 std::vector<std::string> reasons_of(const ReconstructSummary& s) {
   std::vector<std::string> reasons;
   const Reconstruction& r = s.result;
@@ -158,7 +158,7 @@ void keep_registration(const ReconstructJob& job, const PlacedImage& image, Reco
   io::write_plot(s.written.back(), picture);
 }
 
-/// Watches a step of the chain for a job.
+/// Collects the warnings of the chain's steps for a job.
 class Warnings {
  public:
   Warnings(const Reporter& reporter, ReconstructSummary& summary) : told_(reporter) {
@@ -173,9 +173,9 @@ class Warnings {
   Reporter told_;
 };
 
-/// The SEM image, calibrated and with its noise. Both are found twice where there is a scan: the
-/// eroded scan is too broad where it matters, so a first, coarse reconstruction stands in for it
-/// (at most `rounds` times).
+/// Calibrates the SEM image and estimates its noise. With a scan both are found twice: the eroded
+/// scan is too broad where it matters, so a first, coarse reconstruction replaces it (at most
+/// `rounds` times).
 SemData sem_data(const ReconstructJob& job, ReconstructSummary& s, const PlacedImage& image,
                  const AfmData* afm, const Reporter& told) {
   begin(told, "calibration");
@@ -223,8 +223,8 @@ SemData sem_data(const ReconstructJob& job, ReconstructSummary& s, const PlacedI
 
 ReconstructionOptions options_of(const ReconstructJob& job, const ReconstructSummary& s) {
   ReconstructionOptions o = job.options;
-  if (s.gains_tied)
-    o.refine_calibration = false;  // it would go where the channels cannot be told apart
+  // It would follow the direction in which the channels cannot be told apart.
+  if (s.gains_tied) o.refine_calibration = false;
   o.refine_tip = job.afm && job.sem && o.method == ReconstructionMethod::gauss_newton &&
                  job.refine_tip.value_or(s.afm && !s.afm->tip_given);
   return o;
@@ -243,12 +243,12 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
     if (s.saturated > 0)
       told.note(fmt::format("SEM: {} saturated pixels are left out", s.saturated));
     ModelRequest request = job.model;
-    if (request.folder.empty()) request.folder = job.folder;  // without a cache
+    if (request.folder.empty()) request.folder = job.folder;  // no cache folder
     s.model = model_of(request, image, told);
   }
   if (job.afm) s.afm = prepare(*job.afm, threads, told);
   if (job.afm && job.sem) {
-    // A pixel is near enough to begin with: the map is fitted with the surface.
+    // An error of a pixel is small enough as an initial guess: the map is fitted with the surface.
     PoseOptions pose = job.pose;
     pose.registration.largest_stderr_px = std::max(pose.registration.largest_stderr_px, 1.0);
     s.pose = pose_of(pose, *s.afm, image, *s.model, threads, told);

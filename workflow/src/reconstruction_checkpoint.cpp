@@ -16,7 +16,7 @@ namespace {
 
 constexpr char mark[] = "semsurf reconstruction 2\n";
 
-/// Numbers as 8 bytes each, lowest first.
+/// Writes numbers as 8 bytes each, lowest first.
 class Writer {
  public:
   void number(double value) { whole(std::bit_cast<std::uint64_t>(value)); }
@@ -151,7 +151,7 @@ Identity identity_in(const std::string& block) {
   return identity;
 }
 
-/// Does what may fail, with a remedy for people who did not choose the file.
+/// Runs `work` and gives its errors a remedy for users who did not choose the file.
 template <class Work>
 void with_remedy(Work work) {
   try {

@@ -11,24 +11,24 @@
 
 namespace surf::workflow {
 
-/// States of a reconstruction in a file, to the last bit. A first block says of which
+/// States of a reconstruction in a file, exact to the last bit. The first block identifies the
 /// reconstruction.
 class ReconstructionCheckpoint : public ReconstructionJournal {
  public:
-  /// A file of another reconstruction is begun anew, which `note` then says. Throws FileError.
+  /// Replaces a file of another reconstruction and says so through `note`. Throws FileError.
   ReconstructionCheckpoint(const std::filesystem::path& path, const Identity& identity,
                            const NoteCallback& note);
 
   std::optional<ReconstructionState> found() override;
   void keep(const ReconstructionState& state) override;
-  /// The work is done.
+  /// Deletes the file, because the work is done.
   void remove() { file_.remove(); }
 
  private:
   CheckpointFile file_;
 };
 
-/// A state as bytes, and back. Nothing for bytes that are no state.
+/// Serialize a state, and read it back. `unpack` returns nothing for bytes that are not a state.
 std::string pack(const ReconstructionState& state);
 std::optional<ReconstructionState> unpack(const std::string& bytes);
 

@@ -32,8 +32,8 @@ std::string hash_of(const Grid<double>& values) {
   return io::sha256_of(std::as_bytes(std::span(values.data())));
 }
 
-/// What made a file: the same for a run that is repeated from the report. `model` is the model's
-/// file as it was written.
+/// The provenance of a file, which is the same for a run that is repeated from the report. `model`
+/// is the model's file as written.
 Metadata made_by(const ReconstructJob& job, const ReconstructSummary& s, const AfmData* afm,
                  const SemData* sem, const fs::path& model) {
   std::vector<fs::path> inputs;
@@ -72,8 +72,8 @@ Image placed_like(const Placement& placement, const Metadata& made) {
   return image;
 }
 
-/// Certainty of the scan at the surface's samples: 1 where the eroded scan is the surface, 0 where
-/// it may lie above.
+/// The certainty of the scan at the surface's samples: 1 where the eroded scan is the surface, 0
+/// where it may lie above the surface.
 Mask certain_on(const HeightField& surface, const CertaintyMap& map, const Affine& to_afm) {
   Mask certain(surface.z_nm.width(), surface.z_nm.height());
   const HeightField& scan = map.surface;
@@ -90,7 +90,7 @@ Mask certain_on(const HeightField& surface, const CertaintyMap& map, const Affin
   return certain;
 }
 
-/// The surface with all that is known of its heights.
+/// The surface and everything known about its heights.
 Image surface_image(const ReconstructSummary& s, const Metadata& made) {
   const Reconstruction& r = s.result;
   Image image = placed_like(r.surface, made);

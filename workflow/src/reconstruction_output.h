@@ -8,14 +8,14 @@
 
 namespace surf::workflow {
 
-/// Writes all files of a result; the report comes last, so that where there is one the rest is
-/// whole. Returns their names. `afm` and `sem` are what the reconstruction was given, or null.
+/// Writes all files of a result and returns their names. The report comes last: if it exists, the
+/// other files are complete. `afm` and `sem` are the inputs of the reconstruction, or null.
 std::vector<std::filesystem::path> write_reconstruction(const ReconstructJob& job,
                                                         const ReconstructSummary& summary,
                                                         const AfmData* afm, const SemData* sem);
 
 /// The scales as a table: sigma_px, curvature_prior_per_nm, afm, sem, prior, gradient_norm,
-/// iterations, evaluations, products, ended, and of each image's whitened residuals mean,
+/// iterations, evaluations, products, ended, and for the whitened residuals of each image mean,
 /// deviation, along, across, like_noise.
 std::string history_text(const std::vector<ScaleReport>& scales);
 

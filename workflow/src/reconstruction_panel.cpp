@@ -21,7 +21,8 @@ using io::PlotStyle;
 
 constexpr double nm_per_um = 1000;
 constexpr double blank = std::numeric_limits<double>::quiet_NaN();
-constexpr double deviations_shown = 4;  // of whitened residuals, either way
+// Range of whitened residuals shown, in standard deviations either way.
+constexpr double deviations_shown = 4;
 constexpr double row_height_px = 330;
 
 PlacedImage on_samples(const HeightField& field, Grid<double> values, const Mask& valid = {}) {
@@ -43,14 +44,14 @@ PlotPanel residual_panel(const std::string& title, const PlacedImage& image) {
   return panel;
 }
 
-/// What a line across the surface shows.
+/// The data along a line across the surface.
 struct Section {
   std::vector<double> place_um, scan, start, surface, deviation, truth;
 };
 
 struct Line {
   bool along_x = true;
-  int index = 0;  // of the row or column
+  int index = 0;  // number of the row or column
 };
 
 /// The row or column whose heights vary most, away from the border.
@@ -90,7 +91,7 @@ Section section_of(const Line& line, const Reconstruction& r, const HeightField*
   return s;
 }
 
-/// Values that are not finite are left out of a series.
+/// A series of values; those that are not finite are left out.
 PlotSeries series(const std::string& name, const Section& s, const std::vector<double>& values,
                   int color, bool dashed) {
   PlotSeries line;

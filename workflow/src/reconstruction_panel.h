@@ -6,9 +6,9 @@
 
 namespace surf::workflow {
 
-/// All of a result in one picture, after the thesis's figures 10-8 to 10-11: inputs, simulated
-/// images, residuals, surface, deviations, what holds the surface or, where the truth is known, how
-/// far off it is, and cross-sections along the row and the column of most relief.
+/// A picture of the whole result, after the thesis's figures 10-8 to 10-11: inputs, simulated
+/// images, residuals, surface, posterior standard deviations, the data support or, if the truth is
+/// known, the error, and cross-sections along the row and the column of most relief.
 io::Plot reconstruction_panel(const ReconstructJob& job, const ReconstructSummary& summary,
                               const AfmData* afm, const SemData* sem);
 

@@ -27,7 +27,7 @@ std::string list_of(const std::vector<double>& values) {
   return text;
 }
 
-/// Not finite numbers have no place in JSON.
+/// A number, or null if it is not finite, as JSON requires.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 Json file_json(const std::filesystem::path& file) {
@@ -44,8 +44,8 @@ Json map_json(const Affine& m) {
           {"shift_nm", {parts.shift_x_nm, parts.shift_y_nm}}};
 }
 
-/// Heights at 0, 1, 2 ... steps from the apex, the median over all directions; as far as the tip
-/// has samples there.
+/// The tip's heights at 0, 1, 2 ... steps from the apex, as medians over all directions, as far as
+/// the tip has samples.
 Json profile_json(const Tip& tip) {
   Json list = Json::array();
   for (const double z : round_profile_nm(tip, 0.5)) list.push_back(number(z));
@@ -175,7 +175,7 @@ Json scales_json(const std::vector<ScaleReport>& scales) {
   return list;
 }
 
-/// Every parameter by its name: numbers as such.
+/// All parameters by name, with numbers as JSON numbers.
 Json options_json(ReconstructJob used) {
   Json json = Json::object();
   for_each_parameter(used, [&](const Parameter& about, Field& field) {
@@ -189,7 +189,7 @@ Json options_json(ReconstructJob used) {
   return json;
 }
 
-/// Shares of the surface by what holds it.
+/// Shares of the surface by data support.
 Json held_json(const Grid<unsigned char>& held_by) {
   constexpr const char* names[] = {"nothing", "afm", "sem", "both"};
   Json json = Json::object();
@@ -254,7 +254,7 @@ std::vector<std::string> repeating_command(const ReconstructJob& job, const Reco
     add("afm", job.afm->file.string());
     add("tip", (job.folder / (used.options.refine_tip ? "first_tip.txt" : "tip.txt")).string());
     add("afm-noise",
-        list_of({afm->noise.alpha, afm->noise.innovation_nm2}));  // exact, as --height-noise is not
+        list_of({afm->noise.alpha, afm->noise.innovation_nm2}));  // exact, unlike scan.height_noise
     used.afm->preparation.noise.reset();
     usual.afm.emplace();
   }
@@ -304,7 +304,7 @@ std::string reconstruction_report(const ReconstructJob& job, const ReconstructSu
                           {"within_1_deviation", t.coverage_1},
                           {"within_2_deviations", t.coverage_2}});
   }
-  // Paths need not be UTF-8: such bytes are replaced rather than the report lost.
+  // Paths need not be UTF-8. Such bytes are replaced, so that the report is not lost.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

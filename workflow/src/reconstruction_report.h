@@ -8,22 +8,22 @@
 
 namespace surf::workflow {
 
-/// The report as JSON: inputs, every parameter, given or estimated, verdict, residuals, scales, and
-/// the command that makes the same surface again. Nothing of the clock, of threads or of the
-/// machine.
+/// The report as JSON: inputs, all parameters, given or estimated, verdict, residuals, scales, and
+/// the command that makes the same surface again. It does not depend on the clock, on threads or on
+/// the machine.
 std::string reconstruction_report(const ReconstructJob& job, const ReconstructSummary& summary,
                                   const AfmData* afm, const SemData* sem);
 
-/// The job without its images: what there is to describe.
+/// The job without its images: the part that has parameters.
 ReconstructJob parameters_of(const ReconstructJob& job);
 
-/// The same with what was found in place of how it is found: a job that makes the same surface from
-/// the same images, tip and model. Files say this of themselves, so a run that is repeated gives
-/// the same ones.
+/// The job without its images, with estimated values in place of their estimation: a job that makes
+/// the same surface from the same images, tip and model. Files record it, so that a repeated run
+/// writes the same files.
 ReconstructJob parameters_used(const ReconstructJob& job, const ReconstructSummary& summary,
                                const AfmData* afm, const SemData* sem);
 
-/// The words of the command that makes the same surface again, with all that was estimated given.
+/// The words of the command that makes the same surface again, with all estimated values given.
 std::vector<std::string> repeating_command(const ReconstructJob& job,
                                            const ReconstructSummary& summary, const AfmData* afm,
                                            const SemData* sem);

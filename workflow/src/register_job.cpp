@@ -21,7 +21,7 @@ std::string hash_line(const std::filesystem::path& file) {
   return fmt::format("{} sha256 {}", file.filename().string(), io::sha256_of_file(file));
 }
 
-/// Without the images.
+/// The job without the images.
 RegisterJob parameters_of(const RegisterJob& job) {
   RegisterJob out;
   out.afm.reading = job.afm.reading;

@@ -12,9 +12,10 @@ namespace {
 
 constexpr double nm_per_um = 1000;
 constexpr double blank = std::numeric_limits<double>::quiet_NaN();
-constexpr int squares = 8;  // along the image's shorter side
+constexpr int squares = 8;  // number along the image's shorter side
 
-/// Less its mean and over its standard deviation, so that two images can be compared in grey.
+/// Subtracts the mean and divides by the standard deviation, so that two images can be compared as
+/// greys.
 void standardise(Grid<double>& values) {
   double sum = 0, squared = 0, count = 0;
   for (const double v : values.data())

@@ -7,16 +7,16 @@
 
 namespace surf::workflow {
 
-/// The SEM image, the simulated one as it lies under it, squares of both in turn, where edges that
-/// go on say that the map is right, and the simulated image whole with the outline of the SEM
-/// image.
+/// Pictures of a registration: the SEM image; the part of the simulated image under it; a
+/// checkerboard of both, in which continuous edges show that the map is right; and the whole
+/// simulated image with the outline of the SEM image.
 io::Plot registration_picture(const PlacedImage& sem, const PlacedImage& simulated,
                               const Affine& sem_to_afm);
 
 /// The four sides of the SEM image in the AFM's frame, as a closed line, in um.
 io::PlotSeries outline_um(const PlacedImage& sem, const Affine& sem_to_afm);
 
-/// An image for a panel, places in um; what is not valid stays blank.
+/// An image for a panel, with places in um; invalid pixels stay blank.
 io::PlotImage picture_um(const PlacedImage& image);
 
 /// A panel of one image with axes in um.

@@ -58,8 +58,8 @@ void check_request(const mc::ScanRequest& r) {
   }
 }
 
-// The specimen's extent as the beam sees it, about its centre: the box's shadow on the scan's axes,
-// which are x and y turned with the beam by the smallest rotation from straight down.
+// The specimen's extent as seen by the beam, about its centre: the box's shadow on the scan's axes.
+// These are x and y rotated with the beam by the smallest rotation from straight down.
 Rectangle specimen_rectangle(const Box& extent, const mc::Beam& beam) {
   const Vec3 d = mc::direction(beam);
   const double k = 1 / (1 - d.z);
@@ -78,7 +78,7 @@ Rectangle specimen_rectangle(const Box& extent, const mc::Beam& beam) {
   return r;
 }
 
-// Whole pixels along a length that the user gave together with the pixel size.
+// The whole number of pixels along a length that the user gave together with the pixel size.
 double whole_pixels(double length_nm, double pixel_nm, const char* axis) {
   const double pixels = length_nm / pixel_nm;
   const double whole = std::round(pixels);
@@ -93,13 +93,13 @@ double whole_pixels(double length_nm, double pixel_nm, const char* axis) {
                   length_nm / fewer, fewer, length_nm / (fewer + 1), fewer + 1));
 }
 
-// Pixels that cover a length: rounded up, but not for a rounding error's sake.
+// The number of pixels that cover a length, rounded up, except for rounding errors.
 double covering_pixels(double length_nm, double pixel_nm) {
   return std::max(1.0, std::ceil(length_nm / pixel_nm * (1 - 1e-9)));
 }
 
 struct Layout {
-  double width, height;  // whole numbers, as double until they are known to fit
+  double width, height;  // whole numbers, as double until they are known to fit an int
   double pixel_x_nm, pixel_y_nm;
 };
 

@@ -5,12 +5,13 @@
 
 namespace surf::workflow {
 
-/// A job with its request as the simulator takes it.
+/// A job with its request in the form of simulation options.
 struct ResolvedJob : SimulateJob {
-  mc::SimulationOptions options;  ///< the budget is no time limit: it is the accuracy that is
-                                  ///< tried, then the one that fits
+  /// The budget is never a time limit: it is the accuracy that is tried, then the one that fits the
+  /// time.
+  mc::SimulationOptions options;
 
-  /// Wall time, s, that the job may take; 0: any.
+  /// Limit of the job's wall time, s; 0: none.
   double seconds() const {
     const auto* const limit = std::get_if<mc::TimeLimit>(&scene.budget);
     return limit ? limit->seconds : 0;

@@ -17,7 +17,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Each process that does a whole image holds it; of one that is shared the leader alone does.
+// Each process that does a whole image holds it in memory. A shared image is held by the leader
+// alone.
 constexpr double largest_whole_px = 4e6;
 constexpr int tile_px = 32;
 
@@ -40,7 +41,7 @@ class Maker {
   }
 
  private:
-  // What whoever leads decides.
+  // The number of pieces, decided by the leader.
   std::size_t count_pieces() {
     if (!team_ || runs_.weights.empty()) return 0;
     const std::size_t all = runs_.weights.size();
@@ -78,7 +79,7 @@ class Maker {
     return complete;
   }
 
-  // By all of the team, unit by unit, or without one.
+  // Does a run with the whole team, unit by unit, or without a team.
   bool do_together(std::size_t i) {
     const auto start = Clock::now();
     const auto show = [&](double done, double of) {
@@ -88,7 +89,8 @@ class Maker {
     };
     std::optional<FinishedPiece> piece;
     SimulateJob job;
-    together(team_, [&] { job = runs_.make(i); });  // by itself: within it nobody may wait for all
+    // Separately: a run may not wait for all members inside.
+    together(team_, [&] { job = runs_.make(i); });
     together(team_, [&] { piece = simulate(i, std::move(job), show, team_); });
     std::string complete = piece ? "yes" : "no";
     if (team_) team_->broadcast(complete);
@@ -102,7 +104,7 @@ class Maker {
     return true;
   }
 
-  // Nothing when cancelled.
+  // Returns nothing if cancelled.
   std::optional<FinishedPiece> simulate(std::size_t i, SimulateJob job,
                                         const ProgressCallback& progress, Team* with) {
     try {
@@ -111,13 +113,13 @@ class Maker {
       FinishedPiece piece{s.result.balance.incident - s.result.recalled, {}};
       if (runs_.outcome && leads(with)) piece.outcome = runs_.outcome(i, job, s);
       return piece;
-    } catch (const Interrupted&) {  // before there was anything to keep
+    } catch (const Interrupted&) {  // cancelled before there was a result
       return std::nullopt;
     }
   }
 
-  // One voice at a time: other members are told of meanwhile. `progress` is that of the run in the
-  // whole.
+  // A reporter that passes on one message at a time, because other members report meanwhile.
+  // `progress` is the run's share of the whole.
   Reporter quietly(const ProgressCallback& progress) {
     Reporter one;
     one.on_progress = [this, progress](double done, double total, std::string_view things) {

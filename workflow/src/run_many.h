@@ -14,41 +14,43 @@ namespace surf::workflow {
 
 /// Many simulations, one after another or shared by a team.
 struct ManyRuns {
-  std::vector<double> weights;  ///< of each, for progress: so many there are
+  std::vector<double> weights;  ///< one weight per run, for progress
   std::function<SimulateJob(std::size_t run)> make;
-  /// What whoever leads has to know of a run, made by whoever did it. Null: nothing.
+  /// Describes a finished run to the leader; called on the process that did the run. Null: nothing.
   std::function<std::string(std::size_t run, const SimulateJob&, const SimulateSummary&)> outcome;
-  /// Told of all where the team is led, in the order in which they are finished. May be null.
+  /// Called on the leader for every run, in the order in which they finish. May be null.
   std::function<void(std::size_t run, const std::string& outcome)> finished;
-  std::filesystem::path folder;  ///< that their outputs are in
-  std::size_t tiles = 1;         ///< that the least of their images has
-  double pixels = 1;             ///< of the largest
-  bool whole = false;  ///< each by one process, so that its time means the same as without a team
+  std::filesystem::path folder;  ///< folder of their outputs
+  std::size_t tiles = 1;         ///< tiles of the smallest image
+  double pixels = 1;             ///< pixels of the largest image
+  /// One process does each run, so that its time means the same as without a team.
+  bool whole = false;
   int threads = 0;
 
-  std::string things;  ///< what weights count, for progress
+  std::string things;  ///< what the weights count, for progress
   Reporter reporter;
 };
 
 struct ManyDone {
-  bool complete = true;              ///< the same for all of a team; false when cancelled
-  std::int64_t primaries = 0;        ///< simulated, none recalled
-  double seconds = 0;                ///< sum of the wall times of all
+  bool complete = true;              ///< the same on all members; false if cancelled
+  std::int64_t primaries = 0;        ///< simulated primaries, without recalled ones
+  double seconds = 0;                ///< sum of the wall times of all runs
   std::vector<MemberTally> tallies;  ///< by rank, with a team
 
   void add(const ManyDone& other);
 };
 
-/// Counts are the leader's. With a team each process does whole runs, but for few that are left
-/// over or large ones: those are shared unit by unit. Outputs, and bytes, are those of one process.
+/// Does all runs. With a team each process does whole runs. Large runs, and a few runs that are
+/// left over, are shared unit by unit. Outputs and bytes are the same as with one process. The
+/// leader has the true counts.
 ManyDone run_many(const ManyRuns& runs, Team* team);
 
-/// What NAME.run.json tells of a job that a team has done: who did how much of its simulations. The
-/// whole took `seconds`; primaries of whoever leads are those that nobody else has simulated.
+/// The text of NAME.run.json for a job done by a team: the work of each member. The whole job took
+/// `seconds`. The leader's primaries are those that no other member has simulated.
 std::string team_record(const Team& team, const ManyDone& done, double seconds, int threads,
                         const std::string& command_line);
 
-/// The tiles of an image that one thread each can simulate.
+/// The number of tiles in an image; one thread can simulate each.
 std::size_t tiles_of(const mc::Scan& scan);
 
 }  // namespace surf::workflow

@@ -37,13 +37,13 @@ namespace fs = std::filesystem;
 constexpr double degree = std::numbers::pi / 180;
 constexpr int fine = 3;            // samples of the true surface per AFM sample
 constexpr int per_pixel = 2;       // samples of the simulated surface per SEM pixel
-constexpr double beyond_nm = 300;  // that the simulated surface goes on beyond the image
+constexpr double beyond_nm = 300;  // margin of the simulated surface beyond the image
 constexpr std::size_t fewest_cascades = 2048;
 
 constexpr const char* files[] = {"afm.gsf",       "sem.tif",       "truth.gsf",
                                  "truth_tip.gsf", "truth_sem.exr", "truth.json"};
 
-/// A library that is larger than so few primaries per pixel call for: its own chance error is
+/// Makes libraries larger than these few primaries per pixel need: the library's chance error is
 /// common to all pixels.
 class LargeLibraries : public mc::LibrarySource {
  public:
@@ -80,7 +80,7 @@ void check(const SampleJob& job) {
   for (const char* name : files) io::check_writable(job.folder / name);
 }
 
-/// From places in the SEM's frame to those of the surface, whose (0, 0) is the middle of the image.
+/// The map from the SEM's frame to the surface's frame, whose (0, 0) is the middle of the image.
 Affine sem_to_surface(const SampleJob& job, const SampleScene& scene) {
   Affine map;
   map.x0 = -0.5 * (job.width - 1) * scene.sem_pixel_nm;
@@ -120,7 +120,7 @@ AfmFrame afm_frame(const SampleJob& job, const SampleScene& scene) {
   return frame;
 }
 
-/// As wide as the tip is `depth_nm` above its apex.
+/// The tip, as wide as it is `depth_nm` above its apex.
 Tip tip_of(const SampleScene& scene, double pitch_nm, double depth_nm) {
   const double angle = scene.tip_half_angle_deg * degree, radius = scene.tip_radius_nm;
   const double kink_nm = radius * (1 - std::sin(angle));  // where the sphere ends
@@ -135,8 +135,8 @@ double range_of(const HeightField& field) {
   return *high - *low;
 }
 
-/// How deep the tip has to be known: the surface's range over the scan, and something for what lies
-/// between samples.
+/// The depth to which the tip must be known: the surface's range of heights over the scan, and a
+/// margin for heights between samples.
 double depth_of(const SampleJob& job, const SampleScene& scene, const SampleSurface& surface,
                 const AfmFrame& frame) {
   HeightField coarse = empty_field(frame.width, frame.height, scene.afm_pitch_nm, 0, 0);
@@ -145,7 +145,7 @@ double depth_of(const SampleJob& job, const SampleScene& scene, const SampleSurf
   return 1.2 * range_of(coarse);
 }
 
-/// What an ideal AFM would show. The surface reaches as far beyond the scan as the tip does.
+/// The scan of an ideal AFM. The surface extends beyond the scan as far as the tip does.
 HeightField dilated(const SampleJob& job, const SampleScene& scene, const SampleSurface& surface,
                     const AfmFrame& frame, double depth_nm, const Watch& watch) {
   const Tip tip = tip_of(scene, scene.afm_pitch_nm / fine, depth_nm);
@@ -205,7 +205,7 @@ mc::Scene monte_carlo_scene(const SampleJob& job, const SampleScene& scene,
   return mc::Scene(specimen, beam, scan_of(job, scene));
 }
 
-/// The detector's voltage, as it were.
+/// The simulated signal of the detector.
 Image signal_of(const SampleScene& scene, const Image& yields) {
   Image image = yields;
   image.channels = {{"signal", "1", Grid<float>(yields.width(), yields.height())}};
@@ -263,7 +263,7 @@ std::map<std::string, std::string> provenance_of(const SampleJob& job) {
   return step_record("sample", record_of(job), {});
 }
 
-/// All that the simulated image depends on, and the program that makes it.
+/// Everything that the simulated image depends on, including the program.
 Identity identity_of(const SampleJob& job, const mc::SimulationOptions& options) {
   return {{"command", "sample"},
           {"sample", job.name},
@@ -288,7 +288,7 @@ std::unique_ptr<Checkpoint> make_checkpoint(const SampleJob& job,
                                       warn ? warn : say);
 }
 
-/// All but the simulation, from its result.
+/// Writes all files, from the result of the simulation.
 void write_all(const SampleJob& job, const SampleScene& scene, const SampleSurface& surface,
                const AfmFrame& frame, const Image& yields, const CancelToken* cancel,
                std::vector<fs::path>& written) {
@@ -308,7 +308,7 @@ void write_all(const SampleJob& job, const SampleScene& scene, const SampleSurfa
   const auto made = provenance_of(job);
   io::write_height_field(path("afm.gsf"), scan, made);
   Image sem = signal_of(scene, yields);
-  sem.metadata["beam.energy_ev"] = format_exact(scene.energy_ev);  // a microscope knows it
+  sem.metadata["beam.energy_ev"] = format_exact(scene.energy_ev);  // a microscope records it too
   io::write_image(path("sem.tif"), sem);
   io::write_height_field(path("truth.gsf"), truth, made);
   io::write_tip(path("truth_tip.gsf"), tip_of(scene, scene.afm_pitch_nm, depth_nm), made);
@@ -356,7 +356,7 @@ const std::vector<SampleScene>& sample_scenes() {
     return s;
   };
   static const std::vector<SampleScene> all = [&] {
-    // Turn, scales, tangent of the shear.
+    // Rotation, scales, tangent of the shear.
     std::vector<SampleScene> s{scene("nist0523-thick", {7 * degree, 1.02, 0.985, 0.012}, 75, 28),
                                scene("nist0523-thin", {183 * degree, 0.97, 1.01, -0.02}, 60, 25),
                                scene("pads", {94 * degree, 1.035, 1.01, 0.015}, 70, 28),
@@ -427,7 +427,7 @@ SampleSummary run(const SampleJob& job, const Reporter& reporter) {
     summary.written.clear();
     return summary;
   } catch (const Error&) {
-    keep();  // a full disk should not take the work as well
+    keep();  // a full disk should not destroy the work as well
     if (note && !summary.checkpoint.empty())
       note(fmt::format("what is done is kept in {}; the same command goes on from there",
                        summary.checkpoint.string()));

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double rounding = 1e-9;  // samples beyond the border that still count as on it
 
-/// Heights of holes beside known samples become their mean; returns whether any did.
+/// Gives each hole beside known samples their mean. Returns whether there was any.
 bool grow(Grid<double>& z, Mask& known) {
   const int w = z.width(), h = z.height();
   std::vector<std::pair<std::size_t, double>> found;

@@ -8,16 +8,17 @@
 
 namespace surf::workflow {
 
-/// Holes take the height of the nearest sample, counted in steps along rows and columns; of several
-/// the mean. A field without a valid sample stays as it is.
+/// Fills holes from their borders inwards: each hole takes the mean of its known neighbours along
+/// rows and columns. A field without a valid sample is unchanged.
 HeightField with_holes_filled(const HeightField& field);
 
-/// A surface of the AFM's frame on the pixels of an SEM image: each at the place that the map says,
-/// between samples in proportion to the four around. Beyond the field its edge goes on.
+/// A surface in the AFM's frame, interpolated at the pixels of an SEM image: each pixel is mapped
+/// to the AFM's frame, and its height is interpolated bilinearly. Beyond the field its edge
+/// continues.
 struct SurfaceUnderSem {
-  HeightField surface;  ///< whole
-  Mask known;           ///< 1: between samples of the field that are no holes
-  double overlap = 0;   ///< share of the pixels that are
+  HeightField surface;  ///< without holes
+  Mask known;           ///< 1: between valid samples of the field
+  double overlap = 0;   ///< share of known pixels
 };
 SurfaceUnderSem surface_under_sem(const HeightField& afm_surface, const PlacedImage& sem,
                                   const Affine& sem_to_afm);

@@ -25,7 +25,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// What is taken, done and told where the team is led.
+// The state of the pieces on the leader: taken, done and reported.
 class Ledger {
  public:
   Ledger(const Pieces& pieces, std::vector<MemberTally>& tallies)
@@ -73,7 +73,7 @@ class Ledger {
   double weight_ = 0, total_;
 };
 
-// Until there are no more.
+// Does pieces until there are no more.
 void do_pieces(const Pieces& pieces, const TakeUnit& take, const GiveUnit& give,
                const std::function<void(double)>& show) {
   while (const auto number = take()) {
@@ -102,7 +102,7 @@ void follow(Team& team, const Pieces& pieces) {
     team.follow(
         [&](const TakeUnit& take, const GiveUnit& give) { do_pieces(pieces, take, give, {}); },
         pieces.threads, 0, pieces.cancel);
-  } catch (const Interrupted&) {  // whoever leads knows, and says that it is not complete
+  } catch (const Interrupted&) {  // the leader knows, and reports that the work is not complete
   }
 }
 
@@ -142,8 +142,8 @@ void check_same_folder(Team& team, const fs::path& folder) {
     together(&team, [&] {
       std::error_code ignored;
       const auto seen = [&] {
-        for (const auto& entry : fs::directory_iterator(
-                 folder, ignored))  // a network's folder is looked at anew by this
+        // Listing refreshes the view of a network folder.
+        for (const auto& entry : fs::directory_iterator(folder, ignored))
           if (entry.path().filename() == name) return true;
         return fs::exists(folder / name, ignored);
       };

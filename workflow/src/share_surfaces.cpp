@@ -11,7 +11,7 @@
 namespace surf::workflow {
 namespace {
 
-// All that is of one size.
+// All data of fixed size.
 struct Header {
   std::uint64_t shells = 0, solids = 0, vertices = 0, triangles = 0, local = 0,
                 triangles_left_out = 0;
@@ -70,7 +70,7 @@ Header unpack(const std::string& text, mc::SceneSurfaces& s) {
   return header;
 }
 
-// Where an array lies in the memory that is shared.
+// The places of arrays in the shared memory.
 class Layout {
  public:
   template <class T>
@@ -85,7 +85,7 @@ class Layout {
   std::size_t end_ = 0;
 };
 
-// Replaces an array by the same one at a place of the memory; what was there before is freed.
+// Moves an array to a place in the shared memory and frees its old memory.
 template <class T>
 void move_to(const std::shared_ptr<std::byte>& memory, std::size_t place, std::uint64_t count,
              bool fill, mc::SharedArray<T>& array) {

@@ -8,8 +8,8 @@
 
 namespace surf::workflow {
 
-/// Surfaces that the processes of a machine have once, in memory that they share: the first process
-/// makes them, the others' `make` is not called. Where it fails, all fail.
+/// Surfaces in memory shared by the processes of a machine. The first process makes them; the
+/// `make` of the others is not called. If it fails, it fails on all.
 mc::SceneSurfaces share_surfaces(NodeMemory& node, const std::function<mc::SceneSurfaces()>& make);
 
 }  // namespace surf::workflow

@@ -112,7 +112,7 @@ Json charging_json(const Charging& c) {
   return json;
 }
 
-// What the leader did itself is what nobody else did.
+// The leader's own work is the work that no other member did.
 Json team_json(const SimulateSummary& s, int threads) {
   Json ranks = Json::array();
   std::int64_t others = 0;
@@ -190,7 +190,7 @@ std::string sidecar_text(const ResolvedJob& job, const SimulateSummary& summary,
   for (const mc::Material& material : job.scene.specimen.materials)
     json["physics"][material.name] = mc::describe(job.scene.physics, material);
   json["warnings"] = summary.warnings;
-  // Paths need not be UTF-8: such bytes are replaced rather than the record lost.
+  // Paths need not be UTF-8. Such bytes are replaced, so that the record is not lost.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -11,14 +11,14 @@
 
 namespace surf::workflow {
 
-/// The record of one run: all that may differ between two runs that give the same bytes.
+/// The record of one run: everything that may differ between two runs with the same bytes.
 struct RunRecord {
   std::chrono::system_clock::time_point start, end;
   std::vector<InputHash> inputs;
   std::vector<std::filesystem::path> outputs;
 };
 
-/// `NAME.run.json` beside NAME.exr, NAME.tif ...: files of one run with one name share it.
+/// The path `NAME.run.json` beside NAME.exr, NAME.tif ...: files of one run with one name share it.
 std::filesystem::path sidecar_path(const std::filesystem::path& output);
 
 /// The record as JSON.

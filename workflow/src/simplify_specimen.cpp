@@ -22,9 +22,10 @@
 namespace surf::workflow {
 namespace {
 
-constexpr double one_interface_nm = 1e-3;  // faces nearer than this are one (see mc::Specimen)
-constexpr double least_gain = 0.95;  // of the triangles: what leaves more is not worth a change
-constexpr int attempts = 3;          // each with half the tolerance of the last
+constexpr double one_interface_nm = 1e-3;  // nearer faces are one interface (see mc::Specimen)
+// Keeping a larger share of the triangles is not worth a change.
+constexpr double least_gain = 0.95;
+constexpr int attempts = 3;  // each with half the tolerance of the previous one
 
 constexpr const char* tolerance = "`simulation.mesh_tolerance`";
 
@@ -66,7 +67,7 @@ void check_tolerance(const mc::Specimen& specimen, double tolerance_nm) {
   }
 }
 
-// What stays where it is, so that bodies keep touching.
+// The vertices that stay in place, so that bodies keep touching.
 std::vector<Vec3> contacts(const mc::Specimen& specimen, std::size_t of) {
   const TriangleMesh& mesh = specimen.bodies[of].mesh;
   std::vector<std::uint8_t> touching(mesh.vertices_nm.size(), 0);
@@ -96,7 +97,7 @@ bool something_stands_on(const HeightField& field, const std::vector<mc::Body>& 
   });
 }
 
-// Why a simplified mesh cannot stand for the original; empty if it can.
+// Says why a simplified mesh cannot replace the original; empty if it can.
 std::string fault(const TriangleMesh& simple, const TriangleMesh& original, int threads,
                   const Watch& watch) {
   const MeshReport now = check_mesh(simple, watch), before = check_mesh(original, watch);
@@ -207,7 +208,8 @@ std::vector<std::string> warnings_of(const mc::Specimen& specimen, const Simplif
                                 body.name, format_length(done.tolerance_nm), body.kept));
   if (!specimen.height_field) return out;
   const double relief = relief_nm(specimen.height_field->field);
-  if (relief > 0 && relief <= 2 * done.tolerance_nm)  // a plane through its middle would do
+  // A plane through its middle would satisfy the tolerance.
+  if (relief > 0 && relief <= 2 * done.tolerance_nm)
     out.push_back(fmt::format("{}: its whole relief, {}, is within twice {} and may vanish",
                               name_of(*specimen.height_field), format_length(relief),
                               format_length(done.tolerance_nm)));

@@ -37,7 +37,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Only where it is much: where the results of all pixels go until they are written.
+// For large images only: notes where the results of all pixels are stored until they are written.
 void tell_of_scratch(const ResolvedJob& job, const mc::Scan& scan, const NoteCallback& note) {
   const std::size_t bytes = mc::tally_bytes(scan, job.options);
   if (note && bytes > job.options.tally_memory)
@@ -47,7 +47,7 @@ void tell_of_scratch(const ResolvedJob& job, const mc::Scan& scan, const NoteCal
         scan.width, scan.height, static_cast<double>(bytes) / 1e9, job.options.scratch_folder));
 }
 
-// What went on before, where it can go on.
+// Makes the job's checkpoint, if the job can have one.
 std::unique_ptr<Checkpoint> make_checkpoint(const ResolvedJob& job,
                                             const std::map<std::string, std::string>& settings,
                                             const NoteCallback& note, const NoteCallback& warn) {
@@ -58,7 +58,7 @@ std::unique_ptr<Checkpoint> make_checkpoint(const ResolvedJob& job,
                                       warn ? warn : say);
 }
 
-// 0.013 to "1.3%", as the command line takes it.
+// Formats 0.013 as "1.3%", the form of the parameter.
 std::string option_text(double accuracy) {
   std::string text = format_share(accuracy);
   std::erase(text, ' ');
@@ -67,22 +67,22 @@ std::string option_text(double accuracy) {
 
 struct Simulation {
   mc::SimulationResult result;
-  bool final = false;  ///< whether it is what was asked for, not a way to it
+  bool final = false;  ///< the result is the requested one, not a preliminary one
 };
 
 double seconds_since(std::chrono::system_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::system_clock::now() - start).count();
 }
 
-// For a time budget: simulates coarsely and sets the accuracy that fits. The result stands where
-// there is nothing better, or where it was cancelled.
+// For a time budget: simulates coarsely and sets the accuracy that fits. The result is final if no
+// better accuracy fits, or if it was cancelled.
 Simulation find_accuracy(ResolvedJob& job, const mc::Scene& scene, const JobLibraries& kept,
                          const mc::MethodChoice& choice, const RunRecord& record,
                          const mc::SimulationContext& context, const Simulator& simulator,
                          const NoteCallback& note, Team* team) {
   Simulation coarse;
   coarse.result = simulator(scene, job.options, context);
-  if (!leads(team)) return coarse;  // counts nothing
+  if (!leads(team)) return coarse;  // a follower has no counts
   const auto say = [&](const std::string& text) {
     if (note) note(text);
   };
@@ -117,7 +117,7 @@ Simulation find_accuracy(ResolvedJob& job, const mc::Scene& scene, const JobLibr
   return coarse;
 }
 
-// The same for all of a team: who leads has seen the counts.
+// Does the same on all members of a team. The leader has seen the counts and decides.
 Simulation simulate_coarsely(ResolvedJob& job, const mc::Scene& scene, const JobLibraries& kept,
                              const mc::MethodChoice& choice, const RunRecord& record,
                              const mc::SimulationContext& context, const Simulator& simulator,
@@ -131,7 +131,7 @@ Simulation simulate_coarsely(ResolvedJob& job, const mc::Scene& scene, const Job
     thrown = std::current_exception();
   }
   if (!team) return coarse;
-  // What one says to all has to be said in any case: 2 stands for its failure.
+  // The leader must always broadcast, even after a failure, which 2 stands for.
   std::string found = fmt::format("{} {}",
                                   thrown         ? 2
                                   : coarse.final ? 1
@@ -139,13 +139,13 @@ Simulation simulate_coarsely(ResolvedJob& job, const mc::Scene& scene, const Job
                                   format_exact(mc::accuracy_of(job.options.budget)));
   team->broadcast(found);
   if (thrown && leads(team)) std::rethrow_exception(thrown);
-  if (found[0] == '2') throw Interrupted();  // who leads tells why
+  if (found[0] == '2') throw Interrupted();  // the leader reports the reason
   coarse.final = found[0] == '1';
   job.options.budget = mc::Accuracy{std::stod(found.substr(2)), mc::floor_of(job.scene.budget)};
   return coarse;
 }
 
-// Where the job goes on from, when it did not come to its end or to its files.
+// Keeps the checkpoint of a job that was cancelled or could not write its files.
 void keep_interrupted(const ResolvedJob& job, Checkpoint* checkpoint, const NoteCallback& note) {
   if (checkpoint && checkpoint->keep()) {
     if (note)
@@ -214,7 +214,7 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
       throw UsageError("`output.deposit`", "each of several processes would see a part of it",
                        "Run it in one process");
     job = resolve(std::move(asked));
-    if (leads(team) && !job.outputs.empty()) {  // who follows writes nothing
+    if (leads(team) && !job.outputs.empty()) {  // followers write nothing
       check_outputs(job);
       check_checkpoint(job);
     }
@@ -225,15 +225,15 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
     facts = facts_of(job.scene.specimen, node, {{}, cancel});
     summary.scan = resolve_scan(job.scene.scan, facts.extent, job.scene.beam);
     check_trajectories(job, summary.scan);
+    // The first process's meshes are traced.
     if (node && !node->is_first())
-      for (mc::Body& body : job.scene.specimen.bodies)
-        body.mesh = {};  // the first one's are traced
+      for (mc::Body& body : job.scene.specimen.bodies) body.mesh = {};
     ready.emplace(make_scene(job, facts, node, tell, cancel, summary));
   });
   together(team, [&] {
     summary.scene = ready->summary();
     note(warn_before(job, facts, summary.scan));
-    // Of this machine today: it is not for the record.
+    // About this machine at present, so not for the record.
     if (leads(team) && warn)
       for (const std::string& warning : warn_of_full_disks(disk_needs(job, summary.scan)))
         warn(warning);
@@ -259,7 +259,7 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
   if (job.seconds() > 0)
     simulation =
         simulate_coarsely(job, scene, kept, summary.choice, record, context, simulator, tell, team);
-  if (job.seconds() > 0 && !simulation.final) {  // as with an accuracy of that number
+  if (job.seconds() > 0 && !simulation.final) {  // as with a request for that accuracy
     summary.choice =
         mc::choose_method(scene, job.options, s.method, {job.extras.deposit_cells > 0});
     job.options.method = summary.choice.method;
@@ -292,7 +292,7 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
   if (const double accuracy = mc::accuracy_of(summary.result.budget); accuracy > 0)
     summary.tier = tier_doubt(scene.physics(), scene.materials().size(), accuracy);
   summary.charging = charging_of(scene.materials(), summary.result, scene.scan());
-  // Before anything is written, for the same reason as below.
+  // Before anything is written: a failure to write must not destroy the work.
   if (!summary.result.complete) keep_interrupted(job, checkpoint.get(), tell);
   note(warn_after(summary.result, summary.statistics));
 
@@ -319,7 +319,7 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
     for (const fs::path& extra : extra_files(job)) summary.written.push_back(extra);
     write_all(job, image, summary, std::move(record));
   } catch (const Error&) {
-    // A full disk, say: it should not take the work as well.
+    // A full disk, for example, must not destroy the work as well.
     if (summary.result.complete) keep_interrupted(job, checkpoint.get(), tell);
     throw;
   }

@@ -28,10 +28,10 @@ std::vector<io::FileUse> inputs_of(const ResolvedJob& job) {
   return inputs;
 }
 
-/// The images, and what is written beside them.
+/// The images, and the files written beside them.
 std::vector<io::FileUse> outputs_of(const ResolvedJob& job) {
   std::vector<io::FileUse> outputs;
-  std::set<fs::path> records;  // images of one name share theirs
+  std::set<fs::path> records;  // images of one name share their record
   for (const fs::path& output : job.outputs) {
     outputs.push_back({"`output`", output, {}});
     if (const fs::path record = sidecar_path(output); records.insert(record).second)

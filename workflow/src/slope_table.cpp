@@ -18,10 +18,10 @@ namespace {
 
 constexpr double steepest_deg = 89;
 constexpr double ranges_to_edge = 3;
-/// Of the floor; the scene goes on flat to twenty times that, far beyond where what leaves the
-/// slope lands.
+/// Length of the floor in ranges. Beyond it the scene continues flat to twenty times that, much
+/// farther than electrons from the slope land.
 constexpr double floor_in_ranges = 40;
-constexpr std::size_t se = 0, bse = 1;  // of the default detectors
+constexpr std::size_t se = 0, bse = 1;  // indices of the default detectors
 
 void check(const SlopeTableOptions& o) {
   if (!(o.step_deg > 0 && std::isfinite(o.step_deg) && o.last_deg >= 0 &&
@@ -87,7 +87,7 @@ SlopeTable make_slope_table(const mc::Material& material, double energy_ev,
                                                                         : mc::Method::direct;
   SlopeTable table;
   table.step_deg = o.step_deg;
-  // Half a thousandth of a step: 85 is one of the angles whatever rounding makes of 17 x 5.
+  // The added 5e-4 steps make 85 one of the angles, whatever the rounding of 17 x 5.
   const int angles = static_cast<int>(o.last_deg / o.step_deg + 5e-4) + 1;
   for (int i = 0; i < angles; ++i) {
     o.watch.check();

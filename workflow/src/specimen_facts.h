@@ -8,13 +8,13 @@
 
 namespace surf::workflow {
 
-/// What a job has to know of its specimen's shapes besides tracing them.
+/// Facts about the specimen's shapes that a job needs besides the scene.
 struct SpecimenFacts {
-  Box extent;                         ///< mc::extent
-  std::vector<mc::BodyFacts> bodies;  ///< mc::validate
+  Box extent;                         ///< result of mc::extent
+  std::vector<mc::BodyFacts> bodies;  ///< result of mc::validate
 };
 
-/// Validates the specimen; on a machine of several processes the first one does, for all.
+/// Validates the specimen. With several processes on a machine the first one does it for all.
 SpecimenFacts facts_of(const mc::Specimen& specimen, NodeMemory* node, const Watch& watch);
 
 }  // namespace surf::workflow

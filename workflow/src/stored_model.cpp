@@ -20,8 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double usual_energy_ev = 1000;
-constexpr double same_pixel = 1e-3;  // relative, as models ask of fields
-constexpr int layout = 1;            // of what the hash is made of
+constexpr double same_pixel = 1e-3;  // relative; models demand the same of fields
+constexpr int layout = 1;            // version of the hash's input
 
 std::string material_text(const mc::Material& m) {
   std::string text =
@@ -48,7 +48,7 @@ std::string key_of(const ModelRequest& r) {
   return text;
 }
 
-/// "Si" or "my glass" as a part of a file's name.
+/// A name such as "Si" or "my glass" as a part of a file name.
 std::string plain(std::string text) {
   for (char& c : text)
     c = std::isalnum(static_cast<unsigned char>(c))
@@ -129,7 +129,8 @@ StoredModel find_model(const ModelRequest& r, const Reporter& reporter) {
                   file.string()));
   if (!run(training(r, file), reporter).complete) throw Interrupted();
   fs::path images = file;
-  fs::remove_all(images.replace_extension(".training"), ignored);  // they have served
+  // The images are no longer needed.
+  fs::remove_all(images.replace_extension(".training"), ignored);
   StoredModel stored = load(file, r);
   stored.made = true;
   return stored;

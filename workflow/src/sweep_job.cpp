@@ -33,7 +33,7 @@ std::string hash_of(const std::string& text) {
   return io::sha256_of(std::as_bytes(std::span(text))).substr(0, 32);
 }
 
-// Of which sweep a record is: its axes and all values.
+// Identifies a sweep by its axes and all values.
 std::string sweep_identity(const SweepJob& job) {
   std::string text = fmt::format("{}\n", fmt::join(job.axes, " "));
   for (const SweepRun& run : job.runs) text += fmt::format("{}\n", fmt::join(run.values, " "));
@@ -62,11 +62,11 @@ std::optional<Json> read_record(const fs::path& path) {
   try {
     return Json::parse(io::read_file(path));
   } catch (const Json::exception&) {
-    return std::nullopt;  // damaged: done again
+    return std::nullopt;  // damaged: the run is done again
   }
 }
 
-// Its table, records and images would be replaced without a word.
+// Throws if the folder holds another sweep, whose table, records and images would be replaced.
 void refuse_another_sweep(const SweepJob& job, const std::string& sweep) {
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(job.folder / "records", ignored)) {
@@ -113,7 +113,7 @@ std::string quoted(const std::string& text) {
   return text.find(',') == std::string::npos ? text : '"' + text + '"';
 }
 
-// Records of one sweep, by number.
+// The table of a sweep's records, by number.
 std::string table_of(const std::map<std::size_t, Json>& records) {
   if (records.empty()) return "";
   const Json& first = records.begin()->second;
@@ -138,7 +138,7 @@ std::string table_of(const std::map<std::size_t, Json>& records) {
   return text;
 }
 
-// Of a team whoever leads has looked: others may see the folder later than it.
+// The leader decides for a team: other members may see the folder's files later.
 std::vector<std::size_t> find_missing(const SweepJob& job, const std::vector<std::size_t>& mine,
                                       const std::string& sweep, Team* team) {
   std::string letters(mine.size(), '-');
@@ -154,7 +154,7 @@ std::vector<std::size_t> find_missing(const SweepJob& job, const std::vector<std
   return missing;
 }
 
-// What the first tells of all: their size.
+// Takes the size of all runs from the first.
 void describe(const SimulateJob& first, ManyRuns& runs) {
   const mc::Scan scan =
       resolve_scan(first.scene.scan, mc::extent(first.scene.specimen), first.scene.beam);
@@ -236,7 +236,7 @@ SweepSummary run(const SweepJob& job, const Reporter& reporter, const RunCallbac
   });
   runs.reporter = reporter;
   runs.reporter.on_progress = [&](double done, double, std::string_view things) {
-    if (things == "cascades") return;  // the bar counts runs
+    if (things == "cascades") return;  // the progress counts runs
     reporter.progress(static_cast<double>(summary.found) + done, static_cast<double>(mine.size()));
   };
   const ManyDone done = run_many(runs, team);

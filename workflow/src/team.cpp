@@ -34,7 +34,8 @@ void lead_while(Team& team, const TakeUnit& take, const GiveUnit& give, const Ca
                 const std::function<void()>& work, const std::function<void()>& end) {
   std::exception_ptr own, of_team;
   {
-    // The team is led from here: its messages may have to come from the thread that began.
+    // The calling thread leads the team, because MPI may demand that messages come from the thread
+    // that initialised it.
     const auto guarded = [&] {
       try {
         work();
@@ -50,7 +51,7 @@ void lead_while(Team& team, const TakeUnit& take, const GiveUnit& give, const Ca
       of_team = std::current_exception();
       end();
     }
-    if (!at_work.joinable()) guarded();  // what the others have left
+    if (!at_work.joinable()) guarded();  // the work that the others have left
   }
   if (own) std::rethrow_exception(own);
   if (of_team) std::rethrow_exception(of_team);

@@ -18,7 +18,7 @@ std::shared_ptr<const mc::CascadeLibrary> TeamLibraries::library(
     if (!team_.leads()) return;
     try {
       library = own_.library(settings, cascades, threads, watch);
-    } catch (const Interrupted&) {  // all of them are told below
+    } catch (const Interrupted&) {  // all members are told below
     }
   });
   std::string pages = library ? std::to_string(library->pages()) : std::string();

@@ -6,8 +6,8 @@
 
 namespace surf::workflow {
 
-/// Libraries that the leader gets, and everybody then has: they are made once, however many
-/// processes there are.
+/// Libraries that the leader gets and sends to all members: each is made once, for any number of
+/// processes.
 class TeamLibraries : public mc::LibrarySource {
  public:
   /// `own` serves the leader.

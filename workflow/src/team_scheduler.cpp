@@ -14,7 +14,7 @@ void TeamScheduler::run(const mc::UnitWork& work) {
 }
 
 void TeamScheduler::lead(const mc::UnitWork& work) {
-  std::atomic<bool> ended = false;  // by an error on either side
+  std::atomic<bool> ended = false;  // set by an error on either side
   mc::UnitWork shared = work;
   shared.take = [&] { return ended ? std::nullopt : work.take(); };
   lead_while(
@@ -48,7 +48,7 @@ void TeamScheduler::abandon(const std::exception_ptr& reason, const CancelToken*
           throw Interrupted();
         },
         1, 0, cancel);
-  } catch (...) {  // whoever calls passes the reason on
+  } catch (...) {  // the caller passes the reason on
   }
 }
 

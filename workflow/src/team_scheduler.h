@@ -6,8 +6,8 @@
 
 namespace surf::workflow {
 
-/// Simulates units on the threads of all processes of a team, each of which calls `mc::simulate`
-/// for the same scene and options. Whoever leads has the result.
+/// Simulates units on the threads of all processes of a team. Each process calls `mc::simulate` for
+/// the same scene and options. The leader has the result.
 class TeamScheduler final : public mc::UnitScheduler {
  public:
   explicit TeamScheduler(Team& team) : team_(team) {}

@@ -8,7 +8,7 @@
 namespace surf::workflow {
 namespace {
 
-// Shares of the image's mean, by bench_tiers.
+// Differences relative to the image's mean, from bench_tiers.
 constexpr double of_topography = 0.02, of_edges = 0.08, of_materials = 0.3;
 
 }  // namespace

@@ -23,7 +23,7 @@ std::size_t cascades_for(const mc::SimulationResult& result, double accuracy) {
   return mc::library_size(options, 1, result.cascade_yields);
 }
 
-// Two digits, never better than `accuracy`: "1.3%", read back as the command line does.
+// Rounds to two digits, never to a better accuracy: "1.3%", read back as the parameter is.
 double rounded_up(double accuracy) {
   const double percent = 100 * accuracy;
   const double step = std::pow(10.0, std::floor(std::log10(percent)) - 1);
@@ -56,7 +56,7 @@ double accuracy_that_fits(const mc::SimulationResult& coarse, const TimeBudget& 
     return seconds <= reserve * budget.seconds_left;
   };
   if (!fits(coarse_accuracy)) return coarse_accuracy;
-  double low = finest, high = coarse_accuracy;  // the latter fits
+  double low = finest, high = coarse_accuracy;  // `high` fits
   if (fits(low)) return low;
   while (high > low * 1.01) {
     const double middle = std::sqrt(low * high);

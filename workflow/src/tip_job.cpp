@@ -30,7 +30,7 @@ double read_height(std::string_view text, const std::string& subject) {
   return parse_value(text, height, subject);
 }
 
-// "0.1nm" or "0.1nm,0.8": standard deviation, and alpha.
+// Reads "0.1nm" or "0.1nm,0.8": standard deviation, and alpha.
 AfmNoise read_noise(std::string_view text, const std::string& subject) {
   const std::size_t comma = std::min(text.find(','), text.size());
   AfmNoise noise;
@@ -64,7 +64,7 @@ bool sweeps_as_usual(const TipParameters& p) {
          p.sweep_thresholds == usual.sweep_thresholds;
 }
 
-// "FROM,TO,N".
+// Reads "FROM,TO,N".
 void read_sweep(std::string_view text, const std::string& subject, TipParameters& p) {
   const std::size_t first = text.find(','),
                     second = first == text.npos ? first : text.find(',', first + 1);
@@ -106,7 +106,7 @@ AfmNoise noise_of(const std::vector<HeightField>& scans, const Reporter& reporte
   return mean;
 }
 
-// "50 to 130, 230 to 310": runs of directions 10 degrees apart.
+// Formats runs of directions 10 degrees apart: "50 to 130, 230 to 310".
 std::string ranges_of(const std::vector<double>& degrees) {
   std::string text;
   for (std::size_t k = 0; k < degrees.size();) {
@@ -198,7 +198,7 @@ Tip make_tip(const TipShape& s, const TipSampling& sampling) {
       return conical_tip(s.radius_nm, half_angle, sampling);
     case TipShape::parabola:
       return parabolic_tip(s.radius_nm, sampling);
-    case TipShape::ball:  // on a cylinder any radius does
+    case TipShape::ball:  // on a cylinder any radius works
       return s.stem_radius_nm > 0 ? ball_tip(s.radius_nm, s.stem_radius_nm,
                                              s.stem_half_angle_deg * degrees_to_radians, sampling)
                                   : ball_tip(s.radius_nm, 0.5 * s.radius_nm, 0, sampling);

@@ -24,7 +24,7 @@ namespace {
 
 constexpr int usual_surfaces = 60;
 
-/// How many surfaces of the program's own there are to be.
+/// The number of generated surfaces.
 int own_surfaces(const TrainJob& job, const Learner& learner) {
   if (!job.inputs.empty()) return 0;
   return job.surfaces.value_or(learner.needs_images ? usual_surfaces : 0);
@@ -78,7 +78,7 @@ std::vector<TrainingImage> read_images(const TrainJob& job,
     const auto& file = surfaces[i].has_image() ? surfaces[i].image : simulated.files[i];
     images.push_back(read_training_image(surfaces[i], file, job));
   }
-  // Weights of some images beside none of others would mean nothing.
+  // Weights for only some of the images would mean nothing.
   if (std::any_of(images.begin(), images.end(),
                   [](const TrainingImage& i) { return i.standard_errors.empty(); }))
     for (TrainingImage& image : images) image.standard_errors.clear();
@@ -93,7 +93,7 @@ std::map<std::string, std::string> notes_of(const TrainJob& job,
   return notes;
 }
 
-/// What the finished model makes of images, those at `first` and on.
+/// Judges the finished model by images; the first belongs to surface `first`.
 std::vector<TrainingScene> judge(const TrainJob& job, const ImageModel& model,
                                  const std::vector<TrainingSurface>& surfaces, std::size_t first,
                                  const std::vector<TrainingImage>& images, bool held_out) {
@@ -114,7 +114,8 @@ std::vector<TrainingScene> judge(const TrainJob& job, const ImageModel& model,
   return scenes;
 }
 
-/// What surfaces and images say of a finished model. Surfaces are in the order of the images.
+/// Completes the record of a finished model from its surfaces and images. Surfaces are in the order
+/// of the images.
 void complete_record(const TrainJob& job, const std::vector<TrainingSurface>& surfaces,
                      const std::vector<TrainingImage>& learnt,
                      const std::vector<TrainingImage>& held_out, TrainedModel& model) {
@@ -130,7 +131,7 @@ void complete_record(const TrainJob& job, const std::vector<TrainingSurface>& su
     record.scenes.push_back(std::move(scene));
 }
 
-/// From images to the model's file. `complete` is false when cancelled.
+/// Trains the model from the images and writes its file. `complete` is false if cancelled.
 void learn(const TrainJob& job, const Learner& learner,
            const std::vector<TrainingSurface>& surfaces, const SimulatedImages& simulated,
            const Reporter& reporter, TrainSummary& summary) {

@@ -45,14 +45,14 @@ std::vector<FacetScale> read_scales(std::string_view text, const std::string& su
   return scales;
 }
 
-/// "24,12" for two hidden layers, "0" for none.
+/// Reads "24,12" for two hidden layers, "0" for none.
 std::vector<int> read_hidden(std::string_view text, const std::string& subject) {
   if (text == "0") return {};
   return parse_whole_numbers(text, {.name = "units", .help = "", .limits = within(1, 256)},
                              subject);
 }
 
-/// Of a network: its layers can also come from elsewhere than a text.
+/// The hidden layers of a network, which can also be set from a list of values.
 class HiddenField final : public Field {
  public:
   explicit HiddenField(std::optional<std::vector<int>>& layers) : layers_(layers) {}
@@ -81,7 +81,8 @@ class HiddenField final : public Field {
   std::optional<std::vector<int>>& layers_;
 };
 
-/// A kind of those that can be learnt; what is none of them is refused where it is looked for.
+/// A kind of model that can be trained. Unknown kinds are refused later, when the learner is looked
+/// up.
 class KindField final : public Field {
  public:
   explicit KindField(std::string& kind) : kind_(kind) {}
@@ -99,7 +100,7 @@ class KindField final : public Field {
   std::string& kind_;
 };
 
-/// Shows a number that stands for its own choice where it is 0.
+/// Describes a number whose value 0 stands for an automatic choice.
 void show_or_none(ParameterVisitor& visit, int& number, const Parameter& about) {
   std::optional<int> given = number != 0 ? std::optional(number) : std::nullopt;
   visit(given, about);
@@ -116,7 +117,8 @@ double read_square_nm(std::string_view text, const std::string& subject) {
   return x;
 }
 
-/// What a model is for and how its images are simulated, as a request for a simulation.
+/// Describes the scope of a model and the simulation of its images, in the form of a simulation
+/// request.
 void describe_simulation(ParameterVisitor& visit, TrainJob& job) {
   mc::SimulationRequest request;
   request.beam.energy_ev = job.energy_ev;

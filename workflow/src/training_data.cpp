@@ -20,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double same_pitch = 1e-3;  // relative; as of image models
-constexpr double most_coarse = 2;    // times the model's pixel
+constexpr double same_pitch = 1e-3;  // relative; image models demand the same
+constexpr double most_coarse = 2;    // times the model's pixel size
 
 bool is_pitch(double pitch_nm, double wanted_nm) {
   return std::abs(pitch_nm - wanted_nm) <= same_pitch * wanted_nm;
@@ -31,7 +31,7 @@ std::string hash_of(const HeightField& field) {
   return io::sha256_of(std::as_bytes(std::span(field.z_nm.data())));
 }
 
-/// "scan" for "folder/scan.gwy".
+/// The stem of a file name: "scan" for "folder/scan.gwy".
 std::string stem_of(const std::string& name) {
   const std::string stem = fs::path(name).stem().string();
   return stem.empty() ? "surface" : stem;
@@ -84,8 +84,8 @@ Grid<float> even_errors(const Grid<float>& errors, const Mask& used) {
       if (out(x, y) > 0) smallest = std::min<double>(smallest, out(x, y));
     }
   if (!std::isfinite(smallest)) return {};
-  for (float& error : out.data())
-    error = std::max(error, static_cast<float>(smallest));  // no counts at all
+  // No electrons were counted.
+  for (float& error : out.data()) error = std::max(error, static_cast<float>(smallest));
   return out;
 }
 

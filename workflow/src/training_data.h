@@ -12,45 +12,45 @@
 
 namespace surf::workflow {
 
-/// A surface at the model's pixel size, and where its image is or will be.
+/// A surface at the model's pixel size, and its image.
 struct TrainingSurface {
   std::string name;
   HeightField field;
   std::string sha256;
-  /// The image that is given, in a file or as it is. Neither: it is to be simulated.
+  /// The given image, in a file or in memory. If both are empty, the image is simulated.
   std::filesystem::path image;
   std::shared_ptr<const Image> pixels = nullptr;
 
   bool has_image() const { return !image.empty() || pixels; }
 };
 
-/// The job's own surfaces or, where it has none, so many of the program's; resampled where they
-/// have to be, with unique names.
+/// The job's own surfaces, or `own` generated ones if it has none. They are resampled if necessary
+/// and have unique names.
 std::vector<TrainingSurface> gather_surfaces(const TrainJob& job, int own,
                                              const NoteCallback& note);
 
-/// The channels that are learnt: SE and BSE, or the one signal.
+/// The channels to be learnt: SE and BSE, or the one signal.
 std::vector<std::string> channels_of(const TrainJob& job);
 
-/// The image that is given or the one in a file, pixel on sample of the surface. Throws FileError
-/// for channels that are missing, InvalidInput for another size or pixel, or where no pixel can be
-/// used.
+/// Reads the given image, or the one in a file; its pixels coincide with the surface's samples.
+/// Throws FileError for missing channels, InvalidInput for another size or pixel size, or if no
+/// pixel can be used.
 TrainingImage read_training_image(const TrainingSurface& surface, const std::filesystem::path& file,
                                   const TrainJob& job);
 
-/// The job's own, or NAME.training for NAME.json.
+/// The job's own image folder, or NAME.training for NAME.json.
 std::filesystem::path image_folder(const TrainJob& job);
 
 struct SimulatedImages {
-  std::vector<std::filesystem::path>
-      files;  ///< of each surface that has none of its own, else empty
+  /// For each surface: its simulated image, or empty if it has its own.
+  std::vector<std::filesystem::path> files;
   int found = 0, made = 0;
-  ManyDone runs;  ///< those that were made, and whether all were
+  ManyDone runs;  ///< the simulations of missing images, and whether all were made
 };
 
-/// Simulates what is not there yet. Of a team each process simulates whole images, into a folder
-/// that all see; few that are left over they share, unless each is to be `whole`. The leader's
-/// counts are the true ones.
+/// Simulates the missing images. In a team each process simulates whole images into a folder that
+/// all members see. A few that are left over are shared, unless `whole`. The leader has the true
+/// counts.
 SimulatedImages simulate_images(const TrainJob& job, const std::vector<TrainingSurface>& surfaces,
                                 const Reporter& reporter, Team* team = nullptr, bool whole = false);
 

@@ -34,8 +34,8 @@ SimulateJob simulation_of(const TrainJob& job, const TrainingSurface& surface, s
   scene.physics = job.physics;
   out.execution = job.simulation;
   scene.budget = job.simulation.budget;
-  scene.seed = job.simulation.seed +
-               number;  // the libraries' own chance errors then differ from image to image
+  // So that the libraries' chance errors differ from image to image.
+  scene.seed = job.simulation.seed + number;
   out.cache = job.cache;
   out.extras.channels = {"z_nm"};
   out.outputs = {output};
@@ -63,7 +63,8 @@ void tell_what_is_there(std::size_t all, std::size_t missing, std::size_t unusab
 
 constexpr char there = '+', not_there = '-';
 
-// A letter for each. Of a team whoever leads has looked: others may see the folder later than it.
+// One letter for each image. The leader decides for a team: other members may see the folder's
+// files later.
 std::string what_is_missing(const std::vector<SimulateJob>& all, const fs::path& folder,
                             const NoteCallback& note, Team* team) {
   std::string letters;

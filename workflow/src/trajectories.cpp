@@ -18,8 +18,8 @@
 namespace surf::workflow {
 namespace {
 
-constexpr int probe_primaries = 100;  // enough to know how far electrons get
-constexpr double exit_share = 0.35;   // of that, how far electrons that leave are drawn
+constexpr int probe_primaries = 100;  // enough to find how far electrons get
+constexpr double exit_share = 0.35;   // share of that distance to which leaving electrons are drawn
 
 struct Pixel {
   int x, y;
@@ -46,8 +46,8 @@ std::vector<Track> record(const mc::Scene& scene, std::uint64_t seed, const Pixe
   return std::move(recorder.tracks);
 }
 
-// The box around what primaries do inside matter. Their secondaries stay near them, but for a few
-// that fly off to another part of the specimen.
+// The box around the primaries' paths inside matter. Their secondaries stay near them, except a few
+// that fly to another part of the specimen.
 Box box_inside(const std::vector<Track>& tracks) {
   Box box;
   for (const Track& t : tracks)

@@ -16,9 +16,9 @@ namespace {
 
 constexpr double widest_nm = 1e9;         // a metre: no specimen chamber is wider
 constexpr double narrowest_nm = 0.1;      // an atom
-constexpr double finest_pixel_nm = 1e-3;  // surfaces are no better than this
-constexpr double coarsest_nm =
-    1e-4;  // of coordinates: a tenth of the distance at which faces are one
+constexpr double finest_pixel_nm = 1e-3;  // surfaces are not more accurate than this
+// Of coordinates: a tenth of the distance at which faces coincide.
+constexpr double coarsest_nm = 1e-4;
 constexpr double transparent_share = 0.1;  // of the electrons' range
 constexpr double lost_fraction = 1e-6;
 
@@ -58,8 +58,8 @@ void warn_about_size(const Box& extent, std::vector<std::string>& out) {
                     format_length(farthest), step));
 }
 
-/// A mesh in um that was read as nm is a speck that electrons pass through. Neither films nor
-/// particles on a substrate are meant, nor who named the unit.
+/// Warns about bodies that electrons pass through: a mesh in um that was read as nm is a speck.
+/// Films and particles on a substrate are not meant, and neither are meshes with a stated unit.
 void warn_about_transparency(const io::SceneFile& scene, const SpecimenFacts& facts,
                              std::vector<std::string>& out) {
   const mc::Specimen& specimen = scene.specimen;
@@ -97,7 +97,7 @@ void warn_about_scan(const mc::Specimen& specimen, const Box& extent, const mc::
   if (std::min(scan.pixel_x_nm, scan.pixel_y_nm) < finest_pixel_nm)
     out.push_back(fmt::format("pixels of {} are finer than surfaces are resolved (0.001 nm)",
                               format_length(std::min(scan.pixel_x_nm, scan.pixel_y_nm))));
-  if (beam.tilt_deg != 0) return;  // below, region and specimen are compared along z
+  if (beam.tilt_deg != 0) return;  // the comparison of region and specimen below is along z
   const bool bare_plane = specimen.bodies.empty() && !specimen.height_field;
   if (bare_plane) return;
   if (x1 <= extent.lower_nm.x || x0 >= extent.upper_nm.x || y1 <= extent.lower_nm.y ||

@@ -9,12 +9,12 @@
 
 namespace surf::workflow {
 
-/// What looks like a mistake before anything is simulated: sizes off by a unit, a scan beside the
-/// specimen, numbers that cannot give what was asked.
+/// Warnings about likely mistakes before the simulation: sizes off by a unit, a scan beside the
+/// specimen, numbers that cannot give the requested result.
 std::vector<std::string> warn_before(const ResolvedJob& job, const SpecimenFacts& facts,
                                      const mc::Scan& scan);
 
-/// What a result shows: nothing hit, lost electrons, an accuracy that was not reached.
+/// Warnings about a result: nothing hit, lost electrons, an accuracy that was not reached.
 std::vector<std::string> warn_after(const mc::SimulationResult& result,
                                     const mc::ResultSummary& summary);
 

@@ -10,8 +10,8 @@
 
 namespace surf::io {
 
-/// The bytes of a scan file, or of a part of it. Nothing outside is ever read: each access that
-/// would leave the part is a FileError that names the file and the byte.
+/// The bytes of a scan file, or of a part of it. Nothing outside is ever read: each access beyond
+/// the part is a FileError that names the file and the byte.
 class Bytes {
  public:
   Bytes(std::string file, std::string_view data, std::size_t first = 0)
@@ -47,7 +47,7 @@ class Bytes {
     return value;
   }
 
-  /// Text of at most `size` bytes up to its first NUL.
+  /// Text of at most `size` bytes, up to its first NUL.
   std::string_view fixed_text(std::size_t offset, std::size_t size) const;
 
   void require(std::size_t offset, std::size_t size) const {
@@ -60,7 +60,7 @@ class Bytes {
 
   std::string file_;
   std::string_view data_;
-  std::size_t first_;  ///< of the part in the file, for messages
+  std::size_t first_;  ///< offset of the part in the file, for messages
 };
 
 }  // namespace surf::io

@@ -7,10 +7,10 @@
 
 namespace surf::io {
 
-/// The file as Gwyddion itself reads it, as the content of a .gwy; nothing where the program is not
-/// installed. Runs `gwyddion --convert-to-gwy` in a process of its own, which needs no display; the
-/// result is dropped after it is read. Throws FileError with Gwyddion's words where it cannot read
-/// it.
+/// Converts a file by Gwyddion and returns the content of a .gwy file, or nothing if Gwyddion is
+/// not installed. Runs `gwyddion --convert-to-gwy` in a process of its own, which needs no display.
+/// The converted file is deleted after reading. Throws FileError with Gwyddion's message if
+/// Gwyddion cannot read the file.
 std::optional<std::string> convert_by_gwyddion(const std::filesystem::path& path);
 
 }  // namespace surf::io

@@ -15,11 +15,11 @@ struct ScanFile {
   Scan scan;
 };
 
-/// Finds the format by content, then by name, then asks Gwyddion where it is installed.
-/// Throws FileError, Unsupported.
+/// Finds the format by content, then by name, and then tries Gwyddion if it is installed. Throws
+/// FileError, Unsupported.
 ScanFile open_scan(const std::filesystem::path& path);
 
-/// Whether `open_scan` knows the content or name by itself, plain images apart.
+/// Whether `open_scan` recognises the content or name without Gwyddion; plain images do not count.
 bool is_scan_file(const std::filesystem::path& path);
 
 }  // namespace surf::io

@@ -12,14 +12,14 @@
 
 namespace surf::io {
 
-// One reader per format, behind read_height_field. `file` is the name for messages, `content` the
-// whole file, which must outlive the scan. `is_...` looks at the content alone. What a reader
-// returns has sizes that fit the file; failures are FileErrors.
+// One reader per format, called by read_height_field. `file` is the name for messages. `content` is
+// the whole file and must outlive the scan. `is_...` looks at the content alone. The sizes in a
+// reader's result fit the file. Failures are FileErrors.
 
 bool is_gsf(std::string_view content);
 Scan parse_gsf(const std::string& file, std::string_view content);
 
-/// Gwyddion's own.
+/// Gwyddion's own format.
 bool is_gwy(std::string_view content);
 Scan parse_gwy(const std::string& file, std::string_view content);
 
@@ -47,19 +47,19 @@ Scan parse_sxm(const std::string& file, std::string_view content);
 bool is_wsxm(std::string_view content);
 Scan parse_wsxm(const std::string& file, std::string_view content);
 
-/// Matrix or XYZ.
+/// A matrix or XYZ points.
 Scan parse_text_scan(const std::string& file, std::string_view content);
 
-/// EXR, TIFF, PNG and VTI: semsurf's own, and plain ones.
+/// EXR, TIFF, PNG and VTI: semsurf's own and plain ones.
 Scan parse_image_scan(const std::filesystem::path& path);
 
 /// A field's placement and metadata, without its heights.
 Image head_of(const HeightField& field, const std::map<std::string, std::string>& metadata);
 
-/// How a field of ours is described in files: "KEY" to "VALUE" (image_formats.h).
+/// How semsurf describes a field in its files: "KEY" to "VALUE" (image_formats.h).
 std::string description_of(const HeightField& field,
                            const std::map<std::string, std::string>& metadata);
-/// Takes placement and metadata from such lines; whether there were any. Lines of others are
+/// Applies placement and metadata from such lines. Returns whether there were any. Other lines are
 /// ignored.
 bool apply_description(std::string_view lines, const std::string& file, Scan& scan);
 

@@ -12,8 +12,8 @@
 
 namespace surf::io {
 
-/// A value of a TIFF file's directory. Numbers are read where they are there and of a kind of
-/// number.
+/// A value in a directory of a TIFF file. A number is returned only if it exists and the value has
+/// a numeric type.
 class TiffTag {
  public:
   TiffTag(Bytes values, int type, std::size_t count, std::endian order)
@@ -30,7 +30,7 @@ class TiffTag {
   std::endian order_;
 };
 
-/// The directories of a TIFF file, as instruments use them to keep what no image viewer knows.
+/// A directory of a TIFF file. Instruments store data there that image viewers ignore.
 struct TiffPage {
   std::map<int, TiffTag> tags;
   const TiffTag* find(int tag) const;
@@ -40,7 +40,7 @@ struct TiffPage {
 
 bool is_tiff(std::string_view content);
 std::endian tiff_order(std::string_view content);
-/// All pages of a TIFF file; tags whose values do not lie in the file are left out.
+/// Parses all pages of a TIFF file. Tags whose values do not lie in the file are left out.
 std::vector<TiffPage> parse_tiff_pages(const Bytes& bytes);
 
 }  // namespace surf::io

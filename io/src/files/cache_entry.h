@@ -20,7 +20,7 @@
 
 namespace surf::io {
 
-/// An open file, closed at the end.
+/// An open file, closed by the destructor.
 class FileDescriptor {
  public:
   explicit FileDescriptor(int file = -1) : file_(file) {}
@@ -38,23 +38,23 @@ class FileDescriptor {
   int file_;
 };
 
-/// What was read of an entry. `fault` says what is wrong with it, and is empty if nothing is.
+/// The part read of an entry. `fault` describes what is wrong with the entry; empty if nothing is.
 struct EntryContent {
   std::string key;
-  std::vector<std::byte> payload;  ///< only if it was asked for
+  std::vector<std::byte> payload;  ///< only if requested
   std::string fault;
 };
 
 enum class EntryPart { header, checked, payload };
 
-/// Opens an entry for reading, or not, if it is missing or no ordinary file.
+/// Opens an entry for reading. The result is empty if the entry is missing or not an ordinary file.
 FileDescriptor open_entry(const std::filesystem::path& path);
 
-/// Reads an entry from its start: only magic, lengths and key (`header`), all of it without keeping
-/// the payload (`checked`), or all of it.
+/// Reads an entry from its start: only magic, lengths and key (`header`), the whole entry without
+/// keeping the payload (`checked`), or the whole entry (`payload`).
 EntryContent read_entry(const FileDescriptor& file, EntryPart part);
 
-/// Writes an entry into the file. Throws std::system_error.
+/// Writes an entry to a file. Throws std::system_error.
 void write_entry(const std::filesystem::path& path, const std::string& key,
                  std::span<const std::byte> payload);
 

@@ -6,8 +6,8 @@
 
 namespace surf::io {
 
-/// Compressed in zlib's format (RFC 1950), which PNG and browsers know as "deflate". The same bytes
-/// give the same bytes with the same zlib.
+/// Compresses bytes in zlib's format (RFC 1950), which PNG and browsers call "deflate". With the
+/// same zlib, equal input gives equal output.
 std::string deflate(std::string_view bytes);
 
 }  // namespace surf::io

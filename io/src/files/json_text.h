@@ -6,9 +6,9 @@
 
 namespace surf::io {
 
-/// JSON for people: objects a key per line, arrays of plain values and small objects in one line,
-/// which is broken where it gets long. Numbers read back as they were. Throws InvalidInput, naming
-/// the place, for a number that is not finite.
+/// Formats JSON for people: objects with one key per line, arrays of plain values and small objects
+/// in one line, which is broken if it gets long. Numbers read back exactly. Throws InvalidInput,
+/// naming the place, for a number that is not finite.
 std::string json_text(const nlohmann::ordered_json& json);
 
 }  // namespace surf::io

@@ -12,32 +12,32 @@
 
 namespace surf::io {
 
-/// A value in a JSON file that knows its place: every complaint is a FileError which names file and
+/// A value in a JSON file that knows its place. Every error is a FileError that names file and
 /// place, as "part.gltf, nodes[3].scale". Copies share the parsed text.
 class JsonValue {
  public:
-  /// The whole text, which must be one object. Nesting may be of any depth.
+  /// Parses the whole text, which must be one object. Nesting may have any depth.
   static JsonValue parse(const std::string& file, std::string_view text);
 
-  /// The value of a key of this object, if it is there.
+  /// The value of a key of this object, if the key exists.
   std::optional<JsonValue> find(const std::string& key) const;
-  /// The same; throws where it is missing.
+  /// The value of a key of this object. Throws if the key is missing.
   JsonValue require(const std::string& key) const;
 
-  /// The objects or values of the array at `key`; empty where the key is missing.
+  /// The items of the array at `key`; empty if the key is missing.
   std::vector<JsonValue> items(const std::string& key) const;
-  /// The item that the whole number `index` names in the array at `key`.
+  /// The item with number `index` in the array at `key`.
   JsonValue item(const std::string& key, std::uint64_t index) const;
   std::size_t count(const std::string& key) const;
 
   bool is_object() const;
   bool is_text() const;
-  /// The keys of this object, in the order of the alphabet.
+  /// The keys of this object, in alphabetical order.
   std::vector<std::string> keys() const;
 
-  /// The finite numbers of the array at `key`; empty where the key is missing.
+  /// The finite numbers of the array at `key`; empty if the key is missing.
   std::vector<double> numbers(const std::string& key) const;
-  /// The texts of the object at `key`, by their keys; empty where the key is missing.
+  /// The texts of the object at `key`, by their keys; empty if the key is missing.
   std::map<std::string, std::string> texts(const std::string& key) const;
 
   double number() const;
@@ -46,7 +46,7 @@ class JsonValue {
   std::string text() const;
   bool boolean() const;
 
-  // The value of a key or else the fallback.
+  // The value of a key, or the fallback if the key is missing.
   std::uint64_t whole(const std::string& key, std::uint64_t fallback) const;
   std::string text(const std::string& key, const std::string& fallback) const;
   bool boolean(const std::string& key, bool fallback) const;

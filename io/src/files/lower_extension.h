@@ -8,7 +8,7 @@
 
 namespace surf::io {
 
-/// ".stl" for "Part.STL".
+/// The extension in lower case: ".stl" for "Part.STL".
 inline std::string lower_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),

@@ -8,7 +8,7 @@
 
 namespace surf::io {
 
-/// The module's table; where it is missing, it is `file` that cannot be used.
+/// The module's function table. If the module is missing, the error names `file`.
 template <class Table>
 const Table& module_for(const std::string& file) {
   try {

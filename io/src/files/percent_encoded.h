@@ -7,7 +7,7 @@
 
 namespace surf::io {
 
-/// Bytes other than letters, digits and "-._~" as %XX (RFC 3986).
+/// Encodes bytes other than letters, digits and "-._~" as %XX (RFC 3986).
 inline std::string percent_encoded(const std::string& name) {
   std::string uri;
   for (const char c : name) {

@@ -6,15 +6,15 @@
 
 namespace surf::io {
 
-/// Whether JSON and XML can hold the text as it is: UTF-8 (Unicode, table 3-7) without control
-/// characters but tabs and ends of lines.
+/// Whether JSON and XML can hold the text unchanged: UTF-8 (Unicode, table 3-7) without control
+/// characters other than tabs and line ends.
 bool is_plain_text(std::string_view text);
 
-/// The same with U+FFFD in place of every byte that cannot be held: for names of files and what
-/// they say, which nobody can change for the sake of the file that is written.
+/// Replaces every byte that cannot be held by U+FFFD. For file names and texts from files, which
+/// the user cannot change.
 std::string as_plain_text(std::string_view text);
 
-/// Throws InvalidInput for text that is not: `what` says which, as "the name of surface 2".
+/// Throws InvalidInput if the text is not plain. `what` names the text, as "the name of surface 2".
 void check_plain_text(std::string_view text, const std::string& what, const std::string& file);
 
 }  // namespace surf::io

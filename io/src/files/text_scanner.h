@@ -7,7 +7,7 @@
 
 namespace surf::io {
 
-/// A word as a message can show it: short and printable.
+/// A word made short and printable, for messages.
 std::string shown(std::string_view word);
 
 /// Walks through a text file without copying it. Numbers do not cross the end of a line. Every
@@ -15,22 +15,22 @@ std::string shown(std::string_view word);
 class TextScanner {
  public:
   struct Syntax {
-    char comment = '\0';        ///< from this character to the end of the line; 0: none
+    char comment = '\0';        ///< begins a comment to the end of the line; 0: none
     bool continuation = false;  ///< a backslash at the end of a line joins it with the next
   };
 
   TextScanner(std::string file, std::string_view text) : TextScanner(file, text, Syntax{}) {}
   TextScanner(std::string file, std::string_view text, Syntax syntax);
 
-  /// Whether the line holds nothing more.
+  /// Whether nothing is left on this line.
   bool at_line_end();
-  /// Goes to the next line that holds something; false at the end of the text.
+  /// Goes to the next line that is not empty; false at the end of the text.
   bool next_filled_line();
-  /// Whether nothing but blanks and comments is left.
+  /// Whether only blanks and comments are left.
   bool at_end();
   void skip_line();
 
-  /// The next word of this line; empty at its end.
+  /// The next word of this line; empty at the end of the line.
   std::string_view word();
   /// The next word of this or a later line; empty at the end of the text.
   std::string_view word_on_any_line();
@@ -39,7 +39,7 @@ class TextScanner {
   double number(std::string_view what);
   std::int64_t integer(std::string_view what);
 
-  /// Throws unless the line holds nothing more.
+  /// Throws unless nothing is left on this line.
   void expect_line_end(std::string_view what);
 
   std::size_t position() const { return position_; }

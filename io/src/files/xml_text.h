@@ -6,7 +6,7 @@
 
 namespace surf::io {
 
-/// Text as XML holds it, in an attribute or element; characters that it cannot hold become '_'.
+/// Escapes text for an XML attribute or element. Characters that XML cannot hold become '_'.
 inline std::string xml_escaped(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -25,7 +25,7 @@ inline std::string xml_escaped(std::string_view text) {
         break;
       case '\t':
         result += "&#9;";
-        break;  // attributes lose these otherwise
+        break;  // attributes would lose these
       case '\n':
         result += "&#10;";
         break;

@@ -11,19 +11,19 @@
 
 namespace surf::io {
 
-/// A ZIP archive (PKWARE's APPNOTE 6.3) in memory, as 3MF and other packages are. The same parts
-/// give the same bytes: all are dated 1980.
+/// Writes a ZIP archive (PKWARE's APPNOTE 6.3) in memory, the container of 3MF and other packages.
+/// Equal parts give equal bytes: all are dated 1980.
 class ZipWriter {
  public:
   /// `file` is the name for messages.
   explicit ZipWriter(std::string file);
   ~ZipWriter();
 
-  /// Begins a part; `append` gives its content, in as many pieces as convenient, which are packed
-  /// as they come.
+  /// Begins a part. `append` adds its content in any number of pieces, which are compressed at
+  /// once.
   void begin(const std::string& name);
   void append(std::string_view piece);
-  /// Ends the archive and gives it away. Throws InvalidInput for parts beyond 4 GB.
+  /// Ends the archive and returns it. Throws InvalidInput for parts beyond 4 GB.
   std::string finish();
 
  private:
@@ -42,11 +42,11 @@ class ZipWriter {
 /// The parts of a ZIP archive. `content` must outlive this.
 class ZipReader {
  public:
-  /// Throws FileError for what is no archive or is damaged.
+  /// Throws FileError if the content is not an archive or is damaged.
   ZipReader(std::string file, std::string_view content);
 
   std::vector<std::string> names() const;
-  /// The part of that name (letters of either case), unpacked and checked; nothing where there is
+  /// The unpacked and checked part of that name (case does not matter), or nothing if there is
   /// none. Throws FileError, also for parts that unpack to an absurd size, and Unsupported.
   std::optional<std::string> read(std::string_view name) const;
 

@@ -13,25 +13,26 @@
 
 namespace surf::io {
 
-/// The file beside `path` that a buffer's URI names. `buffer` is the place for messages.
+/// The path of the file that a buffer's URI names, beside `path`. `buffer` is the place for
+/// messages.
 std::filesystem::path gltf_buffer_file(const std::filesystem::path& path, const JsonValue& buffer,
                                        const std::string& uri);
 inline bool is_data_uri(const std::string& uri) { return uri.starts_with("data:"); }
 
-/// The numbers of a glTF file: its accessors, over views of buffers that lie in the file itself, in
-/// data URIs or in files beside it. Buffers are loaded when first used, so images never are.
+/// Reads the numbers of a glTF file: its accessors, over views of buffers that lie in the file
+/// itself, in data URIs or in files beside it. Buffers are loaded on first use.
 class GltfAccessors {
  public:
-  /// `binary` is the GLB's second chunk, or empty. Both must outlive this.
+  /// `binary` is the GLB's second chunk, or empty. `root` and `binary` must outlive this object.
   GltfAccessors(std::filesystem::path path, const JsonValue& root, std::string_view binary)
       : path_(std::move(path)), root_(root), binary_(binary) {}
 
-  /// Three coordinates per vertex, of any component type; normalized ones are divided as
-  /// KHR_mesh_quantization says. Finite.
+  /// Three finite coordinates per vertex, of any component type. Normalized ones are divided as
+  /// KHR_mesh_quantization demands.
   std::vector<Vec3> positions(std::uint64_t accessor);
-  /// Unsigned whole numbers, one each.
+  /// One unsigned whole number per element.
   std::vector<std::uint32_t> indices(std::uint64_t accessor);
-  /// One number each, of any component type, as float32. Finite.
+  /// One finite number per element, of any component type, as float32.
   std::vector<float> scalars(std::uint64_t accessor);
   /// Whether an accessor's values are single numbers.
   bool is_scalar(std::uint64_t accessor) const;
@@ -39,8 +40,8 @@ class GltfAccessors {
   std::string image(const JsonValue& image);
 
  private:
-  struct Layout;  // how the values of an accessor lie in bytes
-  struct View;    // a stretch of bytes
+  struct Layout;  // how an accessor's values are stored in bytes
+  struct View;    // a range of bytes
 
   std::string_view buffer(std::uint64_t index);
   std::string load(const JsonValue& buffer, const std::string& uri, std::uint64_t bytes) const;

@@ -9,11 +9,10 @@
 
 namespace surf::io {
 
-/// The binary part of a glTF file as it grows: little-endian numbers, each array at a multiple
-/// of 4.
+/// The growing binary part of a glTF file: little-endian numbers, each array at a multiple of 4.
 class GltfBytes {
  public:
-  /// Where an array lies.
+  /// The place of an array.
   struct Stretch {
     std::size_t offset = 0;
     std::size_t bytes = 0;
@@ -36,8 +35,8 @@ class GltfBytes {
   std::string content_;
 };
 
-/// A GLB file (glTF 2.0, 4.4) of text and binary part, which may be empty. Throws InvalidInput
-/// beyond the 4 GB that the format can count.
+/// Formats a GLB file (glTF 2.0, 4.4) from text and binary part, which may be empty. Throws
+/// InvalidInput beyond the 4 GB that the format can count.
 std::string format_glb(const std::string& file, std::string json, std::string binary);
 
 }  // namespace surf::io

@@ -14,41 +14,40 @@
 
 namespace surf::io {
 
-/// Whether the content is that of a GLB file.
+/// Whether the content is a GLB file.
 bool is_glb(std::string_view content);
 
-/// The files beside it in which its buffers lie.
+/// The files beside this one that hold its buffers.
 std::vector<std::filesystem::path> gltf_buffer_files(const std::filesystem::path& path,
                                                      std::string_view content);
 
-/// An opened glTF or GLB file of version 2 whose extensions can be read, and the scale that semsurf
-/// gave it.
+/// An opened glTF or GLB file of version 2 without unreadable extensions, and the scale that
+/// semsurf gave it.
 class GltfDocument {
  public:
-  /// Text and binary part of a file.
+  /// The text and the binary part of a file.
   struct Container {
     std::string_view json;
     std::string_view binary;
   };
 
-  /// `content` must outlive this. Throws FileError, Unsupported.
+  /// `content` must outlive this object. Throws FileError, Unsupported.
   GltfDocument(const std::filesystem::path& path, std::string_view content);
-  GltfDocument(const GltfDocument&) = delete;  // the accessors look at the root
+  GltfDocument(const GltfDocument&) = delete;  // the accessors refer to the root
 
   const JsonValue root;
   GltfAccessors accessors;
-  /// The nm that a unit of the scene stands for: those of a metre, with semsurf's magnification
-  /// undone.
+  /// Length of one scene unit in nm: a metre, with semsurf's magnification undone.
   double unit_nm;
-  /// How much too high the scene is.
+  /// Factor by which the heights of the scene are exaggerated.
   double z_exaggeration = 1;
 
-  /// Whether semsurf's own extras are in it.
+  /// Whether the file has semsurf's own extras.
   bool is_own() const { return own_.has_value(); }
-  /// Empty in files of others.
+  /// Empty in files of other programs.
   std::map<std::string, std::string> metadata() const;
 
-  /// From the scene, y up, to z up, with the exaggeration undone.
+  /// Maps a point from the scene, y up, to z up, with the exaggeration undone.
   Vec3 upright(const Vec3& p) const { return {p.x, 0.0 - p.z, p.y / z_exaggeration}; }
 
  private:

@@ -8,7 +8,7 @@
 
 namespace surf::io {
 
-/// A valid scene as .glb or, with its buffer and pictures beside it, .gltf.
+/// Formats a valid scene as .glb, or as .gltf with its buffer and pictures in files beside it.
 std::vector<OutputFile> write_gltf(const std::filesystem::path& path, const SceneView& scene);
 
 }  // namespace surf::io

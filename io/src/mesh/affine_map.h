@@ -15,11 +15,11 @@ struct AffineMap {
   Vec3 operator()(const Vec3& p) const {
     return columns[0] * p.x + columns[1] * p.y + columns[2] * p.z + columns[3];
   }
-  /// Whether it turns right-handed things into left-handed ones.
+  /// Whether the map turns right-handed shapes into left-handed ones.
   bool mirrors() const { return dot(columns[0], cross(columns[1], columns[2])) < 0; }
 };
 
-/// First `inner`, then `outer`.
+/// The map that applies `inner` first, then `outer`.
 inline AffineMap product(const AffineMap& outer, const AffineMap& inner) {
   AffineMap result;
   for (std::size_t i = 0; i < 3; ++i) {

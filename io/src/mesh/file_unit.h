@@ -8,12 +8,12 @@
 
 namespace surf::io {
 
-/// Throws UsageError unless it is positive and finite.
+/// Throws UsageError unless the unit is positive and finite.
 void check_unit(double unit_nm, const std::string& file);
 
-/// The nm that one unit of a file stands for. `stated_nm` is what the file or its format says;
-/// without a word and without a given unit it is 1. Throws UsageError where the given unit is none,
-/// or is another one than the file's and does not override it.
+/// The length of one file unit in nm. `stated_nm` is the unit stated by the file or its format. If
+/// no unit is stated or given, the result is 1. Throws UsageError if the given unit is invalid, or
+/// if it differs from the file's and does not override it.
 double file_unit_nm(const MeshUnit& given, std::optional<double> stated_nm,
                     const std::string& file);
 

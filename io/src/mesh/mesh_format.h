@@ -14,9 +14,9 @@
 
 namespace surf::io {
 
-/// A file of meshes to be parsed.
+/// A mesh file to be parsed.
 struct MeshSource {
-  std::filesystem::path path;  ///< names it in messages; files that it names lie beside it
+  std::filesystem::path path;  ///< name for messages; files that it names lie beside it
   std::string_view content;
   MeshUnit unit;
   Want want = Want::everything;
@@ -24,23 +24,24 @@ struct MeshSource {
   std::string file() const { return path.string(); }
 };
 
-/// A format of meshes. The parser's result is z up, with the file's own vertices (not merged),
-/// indices in range, finite coordinates, and units that the note states or in nm; it may have no
-/// triangles. Failures are FileErrors; Unsupported where something in the file cannot be read.
+/// A mesh format. The parser's result is z up, with the file's own vertices (not merged), indices
+/// in range, finite coordinates, in nm or in the unit stated by the note. It may have no triangles.
+/// Failures are FileErrors, or Unsupported if something in the file cannot be read.
 struct MeshFormat {
-  /// What it is called, and what it holds, under each of its extensions.
+  /// For each extension of the format: the extension, and the data that it can hold.
   std::span<const SurfaceFormat> forms;
-  /// By content alone; null where a format has no mark and is known by its name.
+  /// Recognises the format by content alone; null if a format has no mark and is known by its name.
   bool (*is)(std::string_view content) = nullptr;
   ParsedFile (*parse)(const MeshSource& source) = nullptr;
-  /// The files beside it that reading its shapes opens; null where it names none.
+  /// The files beside this one that must be opened to read its shapes; null if the format names
+  /// none.
   std::vector<std::filesystem::path> (*named_files)(const std::filesystem::path& path,
                                                     std::string_view content) = nullptr;
-  /// The files that it is made of. The scene is valid; what the format cannot hold is left out.
+  /// Makes the output files. The scene is valid; data that the format cannot hold are left out.
   std::vector<OutputFile> (*format)(const std::filesystem::path& path,
                                     const SceneView& scene) = nullptr;
-  bool needs_vtk = false;  ///< to be written
-  /// Numbers below it lose digits. 0: `format` checks its numbers itself.
+  bool needs_vtk = false;  ///< VTK is needed for writing
+  /// Numbers below this lose digits. 0: `format` checks its numbers itself.
   double least = 1e-290;
 };
 
@@ -48,7 +49,7 @@ struct MeshFormat {
 extern const MeshFormat gltf_format, three_mf_format, obj_format, ply_format, off_format,
     vtp_format, vtm_format, stl_format;
 
-/// A format that is one file.
+/// The output of a format with a single file.
 inline std::vector<OutputFile> one_file(const std::filesystem::path& path, std::string content) {
   std::vector<OutputFile> files;
   files.push_back({path, std::move(content)});

@@ -11,22 +11,22 @@
 
 namespace surf::io {
 
-/// A body in a file, in the file's units and under the file's name, which may be empty.
+/// A body of a file, in the file's units and with the file's name, which may be empty.
 struct ParsedBody {
-  std::string material;  ///< what the file calls it; empty where it says nothing
-  Surface surface;  ///< scalars have names of the form that `validate` asks for, and finite values
+  std::string material;  ///< as the file calls it; empty if the file names none
+  Surface surface;  ///< scalars have finite values and names in the form that `validate` demands
 };
 
-/// All that a file holds, in its units; the note says what these are.
+/// The content of a file in its units, which the note states.
 struct ParsedFile {
   std::vector<ParsedBody> bodies;
   std::vector<Track> tracks;
   SurfaceNote note;
   bool is_in_nm = false;      ///< the parser converted coordinates itself
-  bool unit_assumed = false;  ///< neither the file nor its reader said what a 1 is: 1 nm
+  bool unit_assumed = false;  ///< neither the file nor the caller stated a unit: 1 nm is assumed
 };
 
-/// What is wanted of a file: scalars, pictures and tracks take time and can be damaged.
+/// The part of a file to read: scalars, pictures and tracks take time and can be damaged.
 enum class Want { shapes, everything };
 
 /// Splits a polygon into triangles around its first corner.
@@ -36,8 +36,8 @@ inline void add_fan(const std::vector<std::uint32_t>& corners, std::vector<Trian
   }
 }
 
-/// Splits a strip: every other triangle runs the other way round. A corner given twice joins two
-/// strips and makes no triangle.
+/// Splits a strip into triangles. Every other triangle has the opposite orientation. A corner given
+/// twice joins two strips and makes no triangle.
 inline void add_strip(const std::vector<std::uint32_t>& corners, std::vector<Triangle>& triangles) {
   for (std::size_t i = 2; i < corners.size(); ++i) {
     const std::size_t odd = i % 2;

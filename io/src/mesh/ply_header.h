@@ -40,7 +40,8 @@ struct PlyHeader {
   std::size_t body = 0;  ///< offset of the first byte after the header
 };
 
-/// Throws FileError with the line. Refuses counts that cannot fit in the file.
+/// Parses a PLY header. Throws FileError with the line. Refuses counts that cannot fit into the
+/// file.
 PlyHeader parse_ply_header(const std::string& file, std::string_view content);
 
 }  // namespace surf::io

@@ -13,47 +13,47 @@
 
 namespace surf::io {
 
-/// A surface as writers see it. Nothing is copied: what it points to outlives it.
+/// A writer's view of a surface. Nothing is copied: the data must outlive the view.
 struct SurfaceView {
   std::string_view name;
   const TriangleMesh* mesh = nullptr;
   std::span<const VertexScalar> scalars;
-  const Drape* drape = nullptr;  ///< or nullptr
+  const Drape* drape = nullptr;  ///< null: no drape
 };
 
-/// What one file shows, and how its numbers are meant.
+/// The content of one output file, and the note on how its numbers are meant.
 struct SceneView {
   std::vector<SurfaceView> surfaces;
   std::span<const Track> tracks;
   SurfaceNote note;
 };
 
-/// The scene as it is in nm. `scene` outlives the result.
+/// A view of the scene in nm. `scene` must outlive the result.
 SceneView view_of(const SurfaceScene& scene);
 
-/// A file that a format is made of. The main one comes last and has the path asked for; the others
-/// lie beside it, under names that begin with its stem.
+/// One of a format's output files. The main file comes last and has the requested path. The others
+/// lie beside it, with names that begin with its stem.
 struct OutputFile {
   std::filesystem::path path;
   std::string content;
 };
 
-/// For each scalar that all surfaces have in the same unit: where each has it. Formats that make
-/// one of several surfaces hold these.
+/// The scalars that all surfaces have in the same unit: for each scalar, its values in every
+/// surface. Formats that join several surfaces into one hold these.
 std::vector<std::vector<const VertexScalar*>> common_scalars(const SceneView& scene);
 
-/// Where the picture shows this place, from 0 (left, below) to 1; beyond the picture its outermost
-/// pixels.
+/// The position of a place in the picture, from 0 (left, below) to 1. Places beyond the picture get
+/// its outermost pixels.
 struct TexturePoint {
   double u = 0;
   double v = 0;
 };
 TexturePoint texture_point(const Drape& drape, const Vec3& place_nm);
 
-/// The picture as a PNG of 8 bits that says its name and place.
+/// Formats the picture as an 8-bit PNG that states its name and place.
 std::string format_drape(const std::string& file, const Drape& drape);
 Image to_image(const Drape& drape);
-/// From a picture that was written so, PNG or VTI.
+/// Reads a picture of `format_drape`, PNG or VTI.
 Drape read_drape(const std::filesystem::path& path);
 
 }  // namespace surf::io

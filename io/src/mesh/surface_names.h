@@ -7,7 +7,7 @@
 
 namespace surf::io {
 
-/// Gives names that were not given before: "tip", "tip 2", "tip 3", with `gap` before the number.
+/// Makes names unique: "tip", "tip 2", "tip 3", with `gap` before the number.
 class UniqueNames {
  public:
   explicit UniqueNames(std::string gap = " ") : gap_(std::move(gap)) {}

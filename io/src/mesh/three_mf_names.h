@@ -11,7 +11,7 @@ inline constexpr const char* three_mf_core =
     "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
 inline constexpr const char* three_mf_model_relation =
     "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
-/// Of semsurf's own metadata, whose names are "semsurf:...".
+/// Namespace of semsurf's own metadata, whose names are "semsurf:...".
 inline constexpr const char* three_mf_own = "urn:semsurf:surface:1";
 inline constexpr const char* three_mf_magnification = "semsurf:magnification";
 inline constexpr const char* three_mf_exaggeration = "semsurf:z_exaggeration";

@@ -8,7 +8,7 @@
 
 namespace surf::io {
 
-/// A neighbourhood of the facet model in a file. Ranges are for the model to check.
+/// A neighbourhood of the facet model in a file. The model itself checks the ranges.
 inline nlohmann::ordered_json facet_json(const FacetScale& scale) {
   return {{"size", scale.size}, {"sigma_px", scale.sigma_px}};
 }

@@ -11,15 +11,17 @@ namespace surf::io {
 
 using ModelParameters = decltype(TrainedModel::parameters);
 
-/// How the parameters of one kind of model lie in a file.
+/// How the parameters of one kind of model are stored in a file.
 struct ModelKind {
   const char* name;
   bool (*is)(const ModelParameters& parameters);
-  nlohmann::ordered_json (*write)(const ModelParameters& parameters);  ///< of this kind only
+  /// For parameters of this kind only.
+  nlohmann::ordered_json (*write)(const ModelParameters& parameters);
   ModelParameters (*read)(const JsonValue& parameters);
 };
 
-// One source file each. A new kind: its file, a line here and one in model_file.cpp.
+// Each kind has its own source file. A new kind needs a file, a line here and a line in
+// model_file.cpp.
 extern const ModelKind facet_network_kind;
 extern const ModelKind slope_model_kind;
 extern const ModelKind filter_bank_kind;

@@ -15,7 +15,7 @@ nlohmann::ordered_json table_json(const Parameters& p) {
           {"heights", p.heights},     {"channels", nlohmann::ordered_json::array()}};
 }
 
-/// Ranges are for the model to check.
+/// Reads the layout. The model itself checks the ranges.
 template <class Parameters>
 void read_table(const JsonValue& value, Parameters& p) {
   const auto count = [&](const char* key) {

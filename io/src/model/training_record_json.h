@@ -8,7 +8,7 @@
 
 namespace surf::io {
 
-/// Where a model comes from, as its file tells it.
+/// The origin of a model, as stored in its file.
 nlohmann::ordered_json record_json(const TrainingRecord& record);
 TrainingRecord record_of(const JsonValue& value);
 

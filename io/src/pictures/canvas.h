@@ -27,28 +27,28 @@ class Canvas {
   virtual void fill_rectangle(Point corner, double width, double height, Color color) = 0;
   virtual void stroke_rectangle(Point corner, double width, double height, double line_width,
                                 Color color) = 0;
-  /// One line through the points; where it crosses itself it is not darker.
+  /// Draws one line through the points. It is not darker where it crosses itself.
   virtual void polyline(std::span<const Point> points, double line_width, Color color) = 0;
-  /// Separate straight lines, from each even point to the next.
+  /// Draws separate straight lines, from each even point to the next.
   virtual void segments(std::span<const Point> ends, double line_width, Color color) = 0;
-  /// `at` is on the line that the letters stand on. Turned by a quarter where `upwards`.
+  /// Writes text. `at` lies on the baseline. With `upwards` the text is turned by a quarter.
   virtual void text(const std::string& text, Point at, double size, Align align, Color color,
                     bool bold = false, bool upwards = false) = 0;
   virtual double text_width(const std::string& text, double size, bool bold = false) = 0;
 
-  /// Until `unclip`, nothing is drawn outside.
+  /// Until `unclip`, nothing is drawn outside this rectangle.
   virtual void clip(Point corner, double width, double height) = 0;
   virtual void unclip() = 0;
 
-  /// Writes the file; nothing can be drawn afterwards. Throws FileError.
+  /// Writes the file. Nothing can be drawn afterwards. Throws FileError.
   virtual void finish() = 0;
 };
 
-/// What the module `cairo` gives.
+/// The function table of the module `cairo`.
 struct CanvasLibrary {
   static constexpr ModuleName module{"cairo", "draws pictures of electron tracks",
                                      "Cairo (Debian: libcairo2)", 100};
-  /// `extension` is ".png", ".svg" or ".pdf". `target` is the name to write to, `file` the one for
+  /// `extension` is ".png", ".svg" or ".pdf". `target` is the path to write to, `file` the name for
   /// messages.
   std::unique_ptr<Canvas> (*make_canvas)(const std::filesystem::path& target,
                                          const std::string& file, const std::string& extension,

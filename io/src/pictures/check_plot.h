@@ -7,7 +7,8 @@
 
 namespace surf::io {
 
-/// Throws InvalidInput, with `file` and the place in the plot, for what `Plot` does not admit.
+/// Throws InvalidInput, naming `file` and the place in the plot, for data that `Plot` does not
+/// admit.
 void check_plot(const Plot& plot, const std::string& file);
 
 }  // namespace surf::io

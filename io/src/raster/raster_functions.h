@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the module `raster` is made of; image_formats.h says what each does.
+// The functions of the module `raster`, documented in image_formats.h.
 #pragma once
 
 #include "image_formats.h"

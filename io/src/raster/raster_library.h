@@ -6,7 +6,8 @@
 
 namespace surf::io {
 
-/// What the module `raster` gives: the functions of image_formats.h that OpenImageIO does.
+/// The function table of the module `raster`: the functions of image_formats.h that use
+/// OpenImageIO.
 struct RasterLibrary {
   static constexpr ModuleName module{"raster", "reads and writes EXR, TIFF and PNG files",
                                      "OpenImageIO (Debian: libopenimageio2.4)", 700};

@@ -6,16 +6,15 @@
 
 namespace surf::io {
 
-/// zlib makes nothing larger than 1032 times.
+/// zlib expands data at most 1032 times.
 inline constexpr double deflate_ratio = 1032;
 
-/// For compressions that are not known here, or have no limit: more than ordinary images ever come
-/// to.
+/// For compressions that are unknown here or have no limit: a ratio beyond that of ordinary images.
 inline constexpr double unknown_ratio = 20000;
 
-/// Throws FileError, before memory is taken, where an image of `pixel_bytes` cannot be in a file of
-/// `file_bytes`: with the best compression it takes `least_bytes`. Small images pass: their reader
-/// says what is wrong.
+/// Throws FileError, before memory is allocated, if an image of `pixel_bytes` cannot fit into a
+/// file of `file_bytes`, because even the best compression takes `least_bytes`. Small images pass:
+/// their reader reports what is wrong.
 void require_stored(const std::string& file, double pixel_bytes, double least_bytes,
                     std::uint64_t file_bytes);
 

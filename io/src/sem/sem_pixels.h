@@ -15,18 +15,17 @@ namespace surf::io {
 /// The picture of an SEM file, before anything is cut off.
 struct SemPixels {
   Grid<double> values;
-  Mask valid;           ///< empty: all are
-  std::string channel;  ///< of files with several
+  Mask valid;           ///< empty: all pixels are valid
+  std::string channel;  ///< set for files with several channels
   int bits = 0;         ///< 0: floats
   std::vector<std::string> notes;
 };
 
-/// Of a TIFF page with a palette that is stored as it is: the numbers before the palette, which may
-/// be bent, and whose entries in colour are for annotations. Empty where the page is of another
-/// kind.
+/// Reads an uncompressed TIFF page with a palette: the indices into the palette. The palette may be
+/// non-linear, and its coloured entries are annotations. Empty if the page is of another kind.
 SemPixels palette_pixels(const TiffPage& page, const Bytes& file);
 
-/// Of an image as its library reads it. `channel` as in SemReadOptions.
+/// Takes the pixels of an image that the image library has read. `channel` as in SemReadOptions.
 SemPixels grey_pixels(const Image& image, const std::string& channel, const std::string& file);
 
 }  // namespace surf::io

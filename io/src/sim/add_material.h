@@ -7,8 +7,8 @@
 
 namespace surf::io {
 
-/// The place of a material among those of the specimen, where it is added if it is not there.
-/// Throws UsageError naming `subject` for one that is not known.
+/// Returns the index of a material among the specimen's materials. Adds the material if it is
+/// missing. Throws UsageError naming `subject` for an unknown material.
 int add_material(SceneFile& scene, const std::string& name, const std::string& subject);
 
 }  // namespace surf::io

@@ -10,15 +10,15 @@
 
 namespace surf::io {
 
-/// A height field in a file, and what the file may not say. A pitch is in place of the file's; the
-/// field's middle is then at (0, 0).
+/// A file of a height field, and data that the file may not state. A given pitch replaces the
+/// file's; the field's middle is then at (0, 0).
 struct FieldSource {
   std::filesystem::path path;
   HeightReadOptions options;
 };
 
-/// Reads a scan, or an image of heights. What had to be assumed is added to `notes`, under the name
-/// `called`. Throws UsageError that names "scan.height_channel", FileError, InvalidInput.
+/// Reads a scan, or an image of heights. Assumptions are added to `notes`, under the name `called`.
+/// Throws UsageError that names "scan.height_channel", FileError, InvalidInput.
 HeightField read_field(const FieldSource& source, const std::string& called,
                        std::vector<std::string>& notes);
 

@@ -12,16 +12,16 @@
 
 namespace surf::io {
 
-/// Reads the file that a table names.
+/// Reads a file named in a table.
 using TextReader = std::function<std::string(const std::string& name)>;
 
-/// The [[material]] tables of a file, in order; missing numbers are estimated with the help of the
-/// materials in `known`. `read`: energy-loss functions. Throws FileError, UsageError or
-/// InvalidInput with line and key.
+/// Reads the [[material]] tables of a file, in order. Missing numbers are estimated with the help
+/// of the materials in `known`. `read` reads files of energy-loss functions. Throws FileError,
+/// UsageError or InvalidInput with line and key.
 std::vector<mc::Material> read_material_tables(const TomlTable& root,
                                                std::span<const mc::Material> known,
                                                const TextReader& read);
-/// Of files beside this one.
+/// A reader for files beside this one.
 TextReader reader_beside(const std::filesystem::path& file);
 
 }  // namespace surf::io

@@ -15,18 +15,19 @@ namespace surf::io {
 /// The solids of a scene file: its substrate, height field and bodies.
 class SceneParts {
  public:
-  /// Adds materials to `scene.specimen` and files to `scene.inputs`; both must outlive this.
+  /// Adds materials to `scene.specimen` and files to `scene.inputs`. `scene` must outlive this
+  /// object.
   SceneParts(std::filesystem::path folder, SceneFile& scene, BodyReader read)
       : folder_(std::move(folder)), scene_(scene), read_(std::move(read)) {}
 
   mc::Substrate read_substrate(const TomlTable& table);
   mc::HeightFieldBody read_height_field(const TomlTable& table);
-  /// One body for a shape, one or more for a mesh file.
+  /// Returns one body for a shape, one or more for a mesh file.
   std::vector<mc::Body> read_bodies(const TomlTable& table);
 
  private:
   int material(const TomlTable& table);
-  /// A path in the scene, relative to its folder; noted as an input.
+  /// Returns a path in the scene, relative to its folder, and notes it as an input.
   std::filesystem::path input(const TomlTable& table, std::string_view key);
   HeightField read_field_file(const TomlTable& table);
   std::vector<mc::Body> read_mesh_file(const TomlTable& table);
@@ -36,14 +37,14 @@ class SceneParts {
   BodyReader read_;
 };
 
-/// `text` with fields as a scene file has them: beam.tilt, beam.tilt = 30deg.
+/// Rewrites fields in `text` as a scene file writes them: beam.tilt, beam.tilt = 30deg.
 std::string with_scene_words(std::string_view text);
 
-/// Says what is refused at its place in the scene file: that of the field's own key if the table
-/// has it, else of `key`.
+/// Throws the error with its place in the scene file: the field's own key if the table has it, else
+/// `key`.
 [[noreturn]] void refuse_at(const TomlTable& table, std::string_view key, const UsageError& error);
 
-/// Runs `work`; what it refuses is reported at its place in the scene file.
+/// Runs `work`. An error is reported at its place in the scene file.
 template <class Work>
 auto at_place(const TomlTable& table, std::string_view key, const Work& work) {
   try {

@@ -7,8 +7,9 @@
 
 namespace surf::io {
 
-/// The known words, those most like `word` first (fewest letters to change, case apart; of a key
-/// such as "density_g_cm3" a part before '_' may be meant).
+/// The known words, the most similar to `word` first. The measure is the number of letters to
+/// change, ignoring case. In keys such as "density_g_cm3" the word may also match a part before
+/// '_'.
 std::vector<std::string> nearest_first(std::string_view word, std::vector<std::string> known);
 
 /// "a, b, c".

@@ -12,24 +12,24 @@
 
 namespace surf::io {
 
-/// A table in a TOML file that knows where it stands. Values are read with their units; messages
-/// name the file, the line and the key. Wrong values are UsageErrors; bad syntax, unknown keys and
-/// missing keys are FileErrors.
+/// A table in a TOML file that knows its place. Values are read with their units. Messages name the
+/// file, the line and the key. Wrong values are UsageErrors; bad syntax, unknown keys and missing
+/// keys are FileErrors.
 class TomlTable {
  public:
   static TomlTable parse(std::string_view text, const std::string& file);
 
-  /// Throws at the first key that is not in `known`, with the nearest known one suggested.
+  /// Throws at the first key that is not in `known`, and suggests the nearest known key.
   void allow(const std::vector<std::string>& known) const;
 
   bool has(std::string_view key) const;
-  /// In alphabetical order.
+  /// All keys, in alphabetical order.
   std::vector<std::string> keys() const;
   bool is_text(std::string_view key) const;
   /// Throws if the key is missing. `why` completes "is missing: ".
   void require(std::string_view key, std::string_view why) const;
 
-  // Empty where the key is missing. Quantities may be numbers in native units or text with units.
+  // Empty if the key is missing. Quantities may be numbers in native units or texts with units.
   std::optional<std::string> text(std::string_view key) const;
   std::optional<double> number(std::string_view key) const;
   std::optional<std::int64_t> integer(std::string_view key) const;
@@ -39,10 +39,11 @@ class TomlTable {
   std::optional<double> angle_deg(std::string_view key) const;
   std::optional<double> current_pa(std::string_view key) const;
   std::optional<double> time_us(std::string_view key) const;
-  /// The value as texts, one for each element of an array: numbers as they are read back, true and
-  /// false as such. Throws for tables and what is not finite.
+  /// The value as texts, one for each element of an array. Numbers are written so that they read
+  /// back the same; booleans are "true" and "false". Throws for tables and values that are not
+  /// finite.
   std::vector<std::string> words(std::string_view key) const;
-  /// An array of texts, or one text; none where the key is missing.
+  /// An array of texts, or one text; empty if the key is missing.
   std::vector<std::string> texts(std::string_view key) const;
   /// An array of lengths, or a text of lengths separated by `separators`.
   std::optional<std::vector<double>> lengths_nm(std::string_view key,

@@ -11,7 +11,7 @@ namespace surf::io {
 
 std::span<const MeshFormat* const> known_formats();
 
-/// By content where that is telling, else by name; null: none of these.
+/// The format by content if the content identifies it, else by name; null if unknown.
 const MeshFormat* format_of(const std::filesystem::path& path, std::string_view content);
 
 /// A format under one of its extensions.

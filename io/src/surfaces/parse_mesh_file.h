@@ -7,9 +7,9 @@
 
 namespace surf::io {
 
-/// Reads a file of any format. `unit` as in `file_unit_nm`. Bodies without triangles are
-/// left out, others have names (the file's, where it gives none) and are in nm. Throws FileError,
-/// Unsupported, UsageError for a unit that is none.
+/// Reads a mesh file of any format. `unit` as in `file_unit_nm`. Bodies without triangles are left
+/// out. The others are in nm and have names (made up if the file gives none). Throws FileError,
+/// Unsupported, UsageError for an invalid unit.
 ParsedFile parse_mesh_file(const std::filesystem::path& path, const MeshUnit& unit, Want want);
 
 }  // namespace surf::io

@@ -8,14 +8,14 @@
 
 namespace surf::io {
 
-/// The format to write, by extension. Throws UsageError for an unknown one, Unsupported where it
-/// needs VTK.
+/// The output format by extension. Throws UsageError for an unknown one, Unsupported if it needs
+/// VTK.
 NamedFormat written_format(const std::filesystem::path& path);
 
-/// Writes a valid scene and returns the names of its files, the main one first. All are whole under
-/// temporary names before the first is renamed; the main one is renamed last. Throws InvalidInput
-/// where its numbers do not fit the format, UsageError where one of the others would replace a
-/// stranger (`refuse_strangers`).
+/// Writes a valid scene and returns the names of its files, the main one first. All files are
+/// complete under temporary names before the first is renamed; the main one is renamed last. Throws
+/// InvalidInput if numbers do not fit the format, UsageError if one of the other files would
+/// replace a stranger (`refuse_strangers`).
 std::vector<std::filesystem::path> write_view(const std::filesystem::path& path, SceneView scene);
 
 }  // namespace surf::io

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the module `vtk` is made of; image_formats.h and vtp_format.h say what each does.
+// The functions of the module `vtk`, documented in image_formats.h and vtp_format.h.
 #pragma once
 
 #include "raster/image_formats.h"

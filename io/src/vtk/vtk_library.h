@@ -8,7 +8,7 @@
 
 namespace surf::io {
 
-/// What the module `vtk` gives. Files of VTK are read without it.
+/// The function table of the module `vtk`. Files of VTK are read without it.
 struct VtkLibrary {
   static constexpr ModuleName module{"vtk", "writes VTI, VTP and VTM files",
                                      "VTK (Debian: paraview or libvtk9.1, as it was built with)",
@@ -22,7 +22,7 @@ struct VtkLibrary {
                        const Volume& volume);
 };
 
-/// Throws Unsupported, of `file`, where it is missing.
+/// Throws Unsupported, naming `file`, if the module is missing.
 const VtkLibrary& vtk_library(const std::string& file);
 
 }  // namespace surf::io

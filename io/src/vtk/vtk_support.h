@@ -13,7 +13,7 @@
 
 namespace surf::io::vtk {
 
-/// Collects VTK's complaints, which would otherwise only be printed.
+/// Collects VTK's error messages, which would otherwise only be printed.
 class VtkComplaints {
  public:
   VtkComplaints() {
@@ -26,7 +26,7 @@ class VtkComplaints {
   vtkCommand* command() { return command_; }
   const std::string& text() const { return text_; }
 
-  /// Hears what a reader or writer says, its executive included.
+  /// Collects the errors of a reader or writer and of its executive.
   template <class Algorithm>
   void listen_to(Algorithm* algorithm) {
     algorithm->AddObserver("ErrorEvent", command());
@@ -34,7 +34,8 @@ class VtkComplaints {
   }
 
  private:
-  // "ERROR: In file, line n\nclass (address): what went wrong\n\n": addresses change each time.
+  // From "ERROR: In file, line n\nclass (address): what went wrong\n\n". The addresses change each
+  // time.
   static std::string first_sentence(std::string text) {
     if (const auto end = text.find("): "); end != std::string::npos) text.erase(0, end + 3);
     std::replace(text.begin(), text.end(), '\n', ' ');

@@ -15,33 +15,33 @@ struct VtkArray {
   std::string name;
   std::size_t components = 1;
   std::vector<double> values;      ///< whole numbers are exact up to 2^53
-  std::vector<std::string> texts;  ///< of an array of type String, which has no values
+  std::vector<std::string> texts;  ///< for an array of type String, which has no values
   bool is_text = false;
 
   std::size_t tuples() const { return is_text ? texts.size() : values.size() / components; }
 };
 
-/// Reads VTK's XML files (VTK File Formats, kitware.com) as they come: text, base64 or appended
-/// (raw or base64) data, plain or compressed with zlib, of either byte order. Nothing in the file
-/// is believed before it is checked. Failures are FileErrors, for other compressors Unsupported.
+/// Reads VTK's XML files (VTK File Formats, kitware.com): text, base64 or appended (raw or base64)
+/// data, plain or compressed with zlib, in either byte order. Everything in the file is checked
+/// before it is used. Failures are FileErrors, or Unsupported for other compressors.
 class VtkXml {
  public:
-  /// An element of the file. Attributes that are missing are empty or the fallback.
+  /// An element of the file. A missing attribute is empty or the fallback.
   class Element {
    public:
     std::vector<Element> children(const char* name) const;
     std::optional<Element> child(const char* name) const;
     std::string attribute(const char* name) const;
-    /// The text in it, without blanks around it.
+    /// The text in the element, without blanks around it.
     std::string text() const;
     /// A whole number from 0 to 2^53.
     std::uint64_t count(const char* name) const;
-    /// As many numbers as the fallback has.
+    /// The numbers in an attribute, as many as the fallback has.
     std::vector<double> numbers(const char* name, const std::vector<double>& fallback) const;
 
     /// All arrays directly below, in order.
     std::vector<VtkArray> arrays() const;
-    /// The first array of this name (any, where it is empty).
+    /// The first array of this name, or of any name if it is empty.
     std::optional<VtkArray> array(std::string_view name) const;
 
     [[noreturn]] void fail(const std::string& reason) const;
@@ -52,7 +52,7 @@ class VtkXml {
     Element(const VtkXml& xml, std::shared_ptr<const Node> node)
         : xml_(&xml), node_(std::move(node)) {}
 
-    // Of an array's element.
+    // For the element of an array.
     VtkArray decoded() const;
     std::vector<double> values(const std::string& type) const;
 
@@ -60,7 +60,7 @@ class VtkXml {
     std::shared_ptr<const Node> node_;
   };
 
-  /// `type`: "PolyData", "ImageData" or "vtkMultiBlockDataSet". `content` must outlive this.
+  /// `type`: "PolyData", "ImageData" or "vtkMultiBlockDataSet". `content` must outlive this object.
   VtkXml(const std::string& file, std::string_view content, const std::string& type);
   ~VtkXml();
 

@@ -8,12 +8,12 @@
 
 namespace surf::io {
 
-/// A page's numbers and pictures as elements of HTML, which its description names by their
+/// A page's numbers and pictures as HTML elements. The page's description refers to them by
 /// position.
 ///
-/// Numbers of 32 bits (floats as their bits) are replaced by the difference from the one before,
-/// split into four planes of bytes, the lowest first, and deflated: 0.2 to 0.85 of base64 alone for
-/// measured heights, 0.01 for the indices of a grid-like mesh.
+/// 32-bit numbers (floats as their bits) are replaced by the difference from the previous number,
+/// split into four planes of bytes, the lowest first, and deflated. For measured heights this takes
+/// 0.2 to 0.85 of the bytes of base64 alone, for the indices of a grid-like mesh 0.01.
 class WebBlobs {
  public:
   nlohmann::json add_numbers(const std::vector<float>& values);

@@ -5,7 +5,7 @@
 
 namespace surf::io {
 
-/// The viewer of web/, bundled into one page, with the marks below where its title and data belong.
+/// The viewer of web/, bundled into one page, with the marks below in place of its title and data.
 /// Empty in a build without Node.js.
 std::string_view web_page_template();
 

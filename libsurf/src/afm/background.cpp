@@ -29,8 +29,8 @@ Powers legendre(double u, int degree) {
   return p;
 }
 
-/// Products of Legendre polynomials over the rectangle that holds the samples used, which keeps the
-/// normal equations well conditioned wherever it lies.
+/// Products of Legendre polynomials over the rectangle around the samples used, which keeps the
+/// normal equations well conditioned for any rectangle.
 struct Basis {
   int degree, terms;
   double centre_x, centre_y, half_x, half_y;  // columns and rows
@@ -49,7 +49,7 @@ struct Basis {
 
 struct Fit {
   Basis basis;
-  double reference_nm;  // of the first sample: sums of differences from it lose no digits
+  double reference_nm;  // height of the first sample; sums of differences from it lose no digits
   std::vector<double> coefficients;
 };
 

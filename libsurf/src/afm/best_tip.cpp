@@ -19,15 +19,15 @@ namespace surf {
 
 namespace {
 
-// Of the outer bounds to begin with: thresholds, in standard deviations of the noise; so often so
-// many more, where the volume jumps most; apex tolerances, in thresholds. A larger one gives more
-// accurate fits, or none.
+// The outer bounds to start from. Thresholds are in standard deviations of the noise. The interval
+// with the largest jump of volume is refined `refinements` times, by `between` thresholds each.
+// Apex tolerances are in thresholds. Larger tolerances give more accurate fits, or none.
 constexpr int thresholds = 10;
 constexpr double least_sigmas = 2.5, step_sigmas = 0.5;
 constexpr int refinements = 2, between = 3;
 constexpr double tolerances[] = {0.8, 1.25};
-constexpr double hopeless_misfit =
-    4;  // after a sixteenth of the iterations: the bound is too blunt
+// After a sixteenth of the iterations a larger misfit shows that the bound is too blunt.
+constexpr double hopeless_misfit = 4;
 
 void check(const BestTipOptions& o) {
   if (!(std::fabs(o.noise.alpha) < 1 && o.noise.innovation_nm2 > 0 &&
@@ -44,7 +44,7 @@ struct Start {
   Tip tip;
 };
 
-// The broader of the two neighbours whose volumes differ most.
+// The index of the broader of the two neighbours whose volumes differ most.
 std::size_t largest_jump(const std::vector<Start>& starts) {
   std::size_t upper = 0;
   double most = -1;
@@ -65,7 +65,7 @@ class OuterBounds {
     options_.width = options.width;
     options_.height = options.height;
     options_.watch = {{}, options.watch.cancel};
-    options_.threads = 1;  // frames are small: whole families of bounds run beside each other
+    options_.threads = 1;  // frames are small: families of bounds are computed in parallel instead
     range_nm_ = std::max(height_range(scans).span_nm(), 1e-9);
   }
 
@@ -79,7 +79,7 @@ class OuterBounds {
     return start;
   }
 
-  // By falling threshold; each begins with the one before.
+  // Bounds by falling threshold; each starts from the bound before it.
   std::vector<Start> family(double sigma_nm, double tolerance) const {
     std::vector<Start> starts;
     for (int n = thresholds - 1; n >= 0; --n)
@@ -134,7 +134,7 @@ BestTip best_tip(const std::vector<HeightField>& scans, const BestTipOptions& op
          hopeless ? fits[k].risk() : fits[k].risk_when_thinned()};
   });
   watch.report(total - 1, total);
-  // The few best are fitted to the end.
+  // Only the best few are fitted to the end.
   constexpr std::size_t finalists = 3;
   std::vector<std::size_t> order(fits.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;

@@ -21,7 +21,7 @@ namespace {
 struct Point {
   std::uint32_t scan;
   std::int32_t x, y;
-  float misfit;  // how far the scan lies above what the tip can make
+  float misfit;  // how far the scan lies above what the tip can make; for maxima, the height itself
 };
 
 void check(const std::vector<HeightField>& scans, const BlindTipOptions& o) {
@@ -49,8 +49,9 @@ void check(const std::vector<HeightField>& scans, const BlindTipOptions& o) {
     throw InvalidInput("tip to start with", "its size or apex is another", "Leave it out");
 }
 
-// Heights about the middle of all scans, so that floats hold them to 1e-7 of the range. `slack_nm`
-// is then more than sums of a few of them can be off: what holds exactly must not fail by rounding.
+// Heights relative to the middle of all scans, so that floats represent them to 1e-7 of the range.
+// `slack_nm` exceeds the rounding error of a sum of a few heights: an inequality that holds exactly
+// must not fail by rounding.
 std::vector<Grid<float>> rebased(const std::vector<HeightField>& scans, float& slack_nm) {
   const HeightRange range = height_range(scans);
   const double middle_nm = 0.5 * (range.low_nm + range.high_nm);
@@ -91,7 +92,7 @@ CarvedTip prepared(const BlindTipOptions& o, float slack_nm) {
   return tip;
 }
 
-// As in the thesis: none of the eight neighbours is higher, and two at least are lower.
+// As in the thesis: none of the eight neighbours is higher, and at least two are lower.
 bool is_local_maximum(const Grid<float>& z, int x, int y) {
   int lower = 0;
   for (int j = -1; j <= 1; ++j)
@@ -116,7 +117,7 @@ class Reconstruction {
   }
 
   CarvedTip run() {
-    // Few points, and nearly all of what there is to learn.
+    // Maxima are few and carry nearly all the information.
     std::vector<Point> maxima = points(true);
     while (carve(maxima)) ++summary_.rounds;
     for (bool changed = !options_.maxima_only; changed;) {
@@ -129,7 +130,7 @@ class Reconstruction {
   }
 
  private:
-  // Those that the tip cannot have made, the worst first.
+  // The points that the tip cannot have made, the worst first; for maxima, the highest first.
   std::vector<Point> points(bool maxima) const {
     std::vector<Point> out;
     for (std::size_t s = 0; s < scans_.size(); ++s) {
@@ -141,7 +142,7 @@ class Reconstruction {
         for (int x = dx; x < scan.width() - dx; ++x) {
           const float z = scan.bottom(x, y);
           if (z == -std::numeric_limits<float>::infinity()) continue;
-          if (tried_[s](x, y) == version_) continue;  // on this very tip
+          if (tried_[s](x, y) == version_) continue;  // with the current tip
           if (made(x, y) < z && (!maxima || is_local_maximum(heights_[s], x, y)))
             out.push_back({static_cast<std::uint32_t>(s), x, y, maxima ? z : z - made(x, y)});
         }
@@ -151,8 +152,8 @@ class Reconstruction {
     return out;
   }
 
-  // Points in batches that see the same tip: the result is that of any number of threads. True if
-  // the tip has changed by more than rounding.
+  // Carves by batches of points that all see the same tip, so that the result does not depend on
+  // the number of threads. Returns true if the tip has changed by more than rounding.
   bool carve(const std::vector<Point>& all) {
     constexpr std::size_t batch = 1024, share = 16;
     bool changed = false;
@@ -188,7 +189,7 @@ class Reconstruction {
   std::vector<CarvedScan> scans_;
   CarvedTip tip_;
   int version_ = 1;               // of the tip
-  std::vector<Grid<int>> tried_;  // the version that a point was tried on last
+  std::vector<Grid<int>> tried_;  // tip version that each point was tried with last
   int threads_;
   std::vector<TipCarver> carvers_;
   std::vector<std::vector<float>> demands_;  // per worker

@@ -38,7 +38,7 @@ void check(const CertaintyOptions& o) {
          "Give 0 nm or more");
 }
 
-/// With so many samples more on each side, holes.
+/// Adds this many samples on each side, as holes.
 HeightField framed(const HeightField& f, int left, int below, int right, int above) {
   const int w = f.z_nm.width(), h = f.z_nm.height();
   HeightField out{{f.pitch_x_nm, f.pitch_y_nm, f.origin_x_nm - left * f.pitch_x_nm,
@@ -53,7 +53,7 @@ HeightField framed(const HeightField& f, int left, int below, int right, int abo
   return out;
 }
 
-/// One tip that does what the hemisphere and then the tip do, but for the lift.
+/// A single tip that replaces the hemisphere followed by the tip, but without the lift.
 Tip kept_away(const Tip& tip, double distance_nm, int width, int height) {
   const Tip sphere = hemisphere_tip(distance_nm, tip.pitch_x_nm, tip.pitch_y_nm, width, height);
   HeightField field{{tip.pitch()}, tip.z_nm, Mask(tip.z_nm.width(), tip.z_nm.height(), 1)};
@@ -77,7 +77,7 @@ Heights eroded(const Heights& upside_down, const Tip& tip, double quantum, int t
       quantise(reflected(tip), quantum, upside_down.z.width(), upside_down.z.height());
   Heights out{{}, -upside_down.top};
   max_plus::convolve(upside_down.z, b.z, b.apex_x, b.apex_y, threads, out.z, nullptr, watch);
-  Quanta top = 0;  // of -z, whose values are from 0 up
+  Quanta top = 0;  // largest -z, which is >= 0
   for (const Quanta z : out.z.data())
     if (z >= lowest) top = std::max(top, -z);
   for (Quanta& z : out.z.data())
@@ -93,7 +93,7 @@ double largest_height(const HeightField& f) {
   return most;
 }
 
-/// Half the side of the square that holds a rectangle.
+/// Half the side of the square that contains a rectangle.
 int half_side(int width, int height) { return std::max(width, height) / 2; }
 
 int apex_neighbourhood(const Tip& tip, double tolerance_nm) {
@@ -105,7 +105,7 @@ int apex_neighbourhood(const Tip& tip, double tolerance_nm) {
   return std::min(half_side(t.x1 - t.x0 + 1, t.y1 - t.y0 + 1), 100);
 }
 
-/// Marks, of what may have touched the tip at an image pixel, what fits best.
+/// Marks those possible contacts of an image pixel that fit best.
 void mark(const Grid<Quanta>& surface, const TipQuanta& tip, int x, int y, const Touch& t,
           Quanta rounding, unsigned char level, int left, int below, Grid<unsigned char>& map) {
   const auto reach = [&](int X, int Y) {
@@ -129,7 +129,7 @@ CertaintyMap certainty_map(const HeightField& image, const Tip& given,
   max_plus::check_pair(image, given, "image");
   const int w = image.z_nm.width(), h = image.z_nm.height();
   const Tip tip = options.distance_nm > 0 ? kept_away(given, options.distance_nm, w, h) : given;
-  // Columns and rows outside that a tip within can touch.
+  // Columns and rows outside the image that a tip inside can touch.
   const int right = std::min(tip.apex_x, w), left = std::min(tip.z_nm.width() - 1 - tip.apex_x, w);
   const int above = std::min(tip.apex_y, h),
             below = std::min(tip.z_nm.height() - 1 - tip.apex_y, h);
@@ -139,7 +139,7 @@ CertaintyMap certainty_map(const HeightField& image, const Tip& given,
                                  options.watch.part(0, 0.3));
 
   CertaintyMap out;
-  // 32-bit floats, in which most scans are stored, round to 2^-24 of a height.
+  // Most scans are stored as 32-bit floats, which are rounded to 2^-24 of a height.
   const double rounding_nm = 0x1p-22 * largest_height(image) + 4 * quantum;
   out.tolerance_nm = std::max(2 * options.sigmas * options.noise_nm, rounding_nm);
   out.neighbourhood = options.neighbourhood >= 0 ? options.neighbourhood
@@ -209,7 +209,7 @@ double pixel_noise_nm(const HeightField& image) {
   if (differences.empty()) return 0;
   const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
   std::nth_element(differences.begin(), middle, differences.end());
-  return 1.4826 / 6 * *middle;  // of normal noise: the mask's weights have the square sum 36
+  return 1.4826 / 6 * *middle;  // for normal noise; the sum of squared weights of the mask is 36
 }
 
 }  // namespace surf

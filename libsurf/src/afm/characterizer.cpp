@@ -49,7 +49,7 @@ Core core_of(const HeightField& scan, const HeightField& known, int reach_x, int
                      "Use a larger scan, a smaller tip or a smaller search");
 }
 
-/// min over the core of I(x + u) - C(x); stops where it falls below `enough`.
+/// min over the core of I(x + u) - C(x). Stops as soon as it falls below `enough`.
 double eroded(const HeightField& scan, const HeightField& known, const Core& c, int u, int v,
               double enough) {
   double least = infinity;
@@ -86,7 +86,7 @@ CharacterizedTip tip_from_characterizer(const HeightField& scan, const HeightFie
       core_of(scan, characterizer, o.search + o.width - apex_x, o.search + o.height - apex_y);
   CharacterizedTip out;
   double highest = -infinity;
-  // From the middle out: of offsets that are as good, the smallest.
+  // From the centre outwards, so that the smallest of equally good offsets is chosen.
   for (int ring = 0; ring <= o.search; ++ring)
     for (int v = -ring; v <= ring; ++v)
       for (int u = -ring; u <= ring; ++u) {

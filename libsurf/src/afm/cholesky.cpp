@@ -16,7 +16,7 @@ bool solve_cholesky(std::vector<double>& a, std::vector<double>& b) {
   const Eigen::VectorXd before = matrix.diagonal();
   Eigen::Ref<Matrix> in_place(matrix);
   if (Eigen::LLT<Eigen::Ref<Matrix>>(in_place).info() != Eigen::Success) return false;
-  // What is left of a column after those before it.
+  // Compares what remains of each column after the elimination of the columns before it.
   if (!(matrix.diagonal().array().square() > 1e-10 * before.array()).all()) return false;
   solve_factored(a, b);
   return true;

@@ -19,8 +19,7 @@ constexpr int largest_radius = 1000;
 constexpr int rows_per_unit = 4;
 constexpr std::uint32_t no_rank = std::numeric_limits<std::uint32_t>::max();
 
-/// Places in order of their heights: a rank for each sample that is not a hole, and the heights by
-/// rank.
+/// The rank of each sample by height, for samples that are not holes, and the heights by rank.
 struct Ranks {
   std::vector<std::uint32_t> of;
   std::vector<double> heights;
@@ -52,7 +51,7 @@ std::vector<int> half_widths(const MedianOptions& o) {
   return out;
 }
 
-/// The median around each sample of a row, from left to right; NaN where there is nothing around.
+/// The median around each sample of a row, from left to right; NaN if there are no samples around.
 class RowMedians {
  public:
   RowMedians(const Ranks& ranks, int width, int height, const std::vector<int>& half_widths)
@@ -101,7 +100,7 @@ class RowMedians {
   OrderedWindow window_;
 };
 
-/// Puts the filtered heights (NaN: none) where they belong and counts.
+/// Applies the filtered heights (NaN: none) to the field and counts the changes.
 Cleaned apply(const HeightField& field, const Grid<double>& filtered, double limit_nm,
               bool fill_holes) {
   Cleaned cleaned{field, {}};
@@ -125,8 +124,8 @@ Cleaned apply(const HeightField& field, const Grid<double>& filtered, double lim
   return cleaned;
 }
 
-/// A running maximum of `width` values about each one of a line, `stride` apart, of which `count`
-/// there are (van Herk, Gil and Werman): maxima from the left and from the right within blocks of
+/// The running maximum over `width` values about each of `count` values that are `stride` apart
+/// (van Herk, Gil and Werman), from maxima from the left and from the right within blocks of
 /// `width`.
 class RunningMaximum {
  public:
@@ -152,7 +151,7 @@ class RunningMaximum {
   std::vector<double> from_left_, from_right_;
 };
 
-/// The highest in the square about each sample; -infinity takes no part.
+/// The maximum in the square about each sample; -infinity is ignored.
 void square_maximum(Grid<double>& grid, int width, int threads, const Watch& watch) {
   const int workers = resolve_threads(threads);
   std::vector<RunningMaximum> runs(static_cast<std::size_t>(workers), RunningMaximum(width));
@@ -209,8 +208,8 @@ Cleaned flat_closing(const HeightField& field, const ClosingOptions& o) {
   for (std::size_t i = 0; i < field.valid.size(); ++i)
     if (!field.valid.data()[i]) grid.data()[i] = nothing;
   square_maximum(grid, o.width, o.threads, o.watch.part(0, 0.5));
-  // The lowest of heights is minus the highest of minus them; where no height was near, nothing
-  // stays.
+  // The minimum of heights is minus the maximum of their negatives. Where there was no height
+  // nearby, `nothing` stays.
   for (double& z : grid.data()) z = z == nothing ? nothing : -z;
   square_maximum(grid, o.width, o.threads, o.watch.part(0.5, 1));
   for (double& z : grid.data()) z = -z;

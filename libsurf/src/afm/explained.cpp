@@ -48,17 +48,18 @@ HWY_EXPORT(raise_to);
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-constexpr int together = 4;  // samples of the tip: what is made is loaded and stored once for all
+// Samples of the tip per pass, so that the result is loaded and stored once for all of them.
+constexpr int together = 4;
 
 }  // namespace
 
 Grid<float> explained_height(const CarvedScan& scan, const CarvedTip& tip, int threads) {
-  // The apex may lie outside of the scan by as much as the tip is wide.
+  // The apex may lie outside the scan by the size of the tip.
   const int w = scan.width() + tip.width - 1, h = scan.height() + tip.height - 1;
   const int left = tip.width - 1 - tip.apex_x,
             below = tip.height - 1 - tip.apex_y;  // apex at (x - left, y - below)
   const auto offsets = [&](int i, int j, float sign,
-                           float* four) {  // beyond the tip those that change nothing
+                           float* four) {  // neutral offsets beyond the tip
     for (int k = 0; k < together; ++k) {
       const auto at = static_cast<std::size_t>(j * tip.stride + i + k);
       const bool there = i + k < tip.width && tip.z[at] > -infinity;

@@ -6,9 +6,9 @@
 
 namespace surf {
 
-/// How high the tip reaches at each point of a scan without rising above its top by more than the
-/// thresholds anywhere: an opening. Points whose bottom is not above it can have been made by the
-/// tip.
+/// The height that the tip reaches at each point of a scan without exceeding the top of the scan by
+/// more than the thresholds anywhere: an opening. The tip can have made a point if the bottom of
+/// the scan is not above this height.
 Grid<float> explained_height(const CarvedScan& scan, const CarvedTip& tip, int threads);
 
 }  // namespace surf

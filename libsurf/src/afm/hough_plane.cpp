@@ -14,8 +14,9 @@
 namespace surf {
 namespace {
 
-constexpr int blocks = 64;           // along each axis, one vote from each
-constexpr double least_share = 0.2;  // of samples on a plane that the slopes searched must allow
+constexpr int blocks = 64;  // per axis; one vote from each block
+// Every plane with at least this share of the samples has a slope within the searched range.
+constexpr double least_share = 0.2;
 constexpr double noise_deviations = 2.5;
 constexpr double clear_factor = 1.5;
 constexpr double weak_share = 0.1;
@@ -23,7 +24,7 @@ constexpr std::size_t planes_per_search = 12000;
 constexpr double slack = 0.01, slack_of_runner_up = 0.1;
 constexpr int most_turns = 50;
 
-/// Places in [-1, 1] across the image.
+/// Maps samples to places in [-1, 1] across the image.
 struct Frame {
   double centre_x, centre_y, half_x, half_y;
   explicit Frame(const HeightField& f)
@@ -42,8 +43,7 @@ Plane to_plane(const SlopedPlane& p, const Plane& rough, const HeightField& fiel
   return out;
 }
 
-/// A sample from each block that has one: the usable one at a random rank, a function of the block
-/// alone.
+/// Draws one usable sample from each block, at a random rank that depends only on the block.
 Votes draw_votes(const HeightField& field, const Mask& use, const Plane& rough) {
   const Frame frame(field);
   const int width = field.z_nm.width(), height = field.z_nm.height();
@@ -69,14 +69,15 @@ Votes draw_votes(const HeightField& field, const Mask& use, const Plane& rough) 
   return votes;
 }
 
-/// Binary Kullback-Leibler divergence of a share from that of chance; 0 if it is no more than that.
+/// The binary Kullback-Leibler divergence of a share from the share expected by chance; 0 if it is
+/// not larger.
 double surprise(double share, double chance) {
   if (share <= chance) return 0;
   const double rest = share < 1 ? (1 - share) * std::log((1 - share) / (1 - chance)) : 0;
   return share * std::log(share / chance) + rest;
 }
 
-/// All but the highest and the lowest 0.5 %, so that a spike does not set the scale.
+/// The range without the highest and the lowest 0.5 %, so that a spike does not set the scale.
 double height_range(const Votes& votes) {
   std::vector<float> z = votes.z;
   std::sort(z.begin(), z.end());
@@ -101,12 +102,13 @@ double least_tolerance(const HeightField& field, double range) {
   double sigma = 0;
   try {
     sigma = std::sqrt(estimate_noise(field).noise.innovation_nm2);
-  } catch (const InvalidInput&) {  // too small an image, or too many holes, to tell
+  } catch (const InvalidInput&) {  // the image is too small or has too many holes
   }
   return std::max(noise_deviations * sigma, range * 1e-3);
 }
 
-/// From coarse to fine, each tolerance beginning with the best plane of the last.
+/// Tries tolerances from coarse to fine. Each search starts from the best planes of the searches
+/// before.
 Choice choose_tolerance(const Votes& votes, SlopeSearch search, double least, double range,
                         HoughSummary& s) {
   Choice best{{}, std::max(least, range / 16)};
@@ -121,7 +123,8 @@ Choice choose_tolerance(const Votes& votes, SlopeSearch search, double least, do
     const double share = static_cast<double>(found.votes) / static_cast<double>(votes.size());
     const double here = surprise(share, std::min(0.99, 2 * tolerance / range));
     if (here > most) most = here, best = {found, tolerance}, s.search_complete = complete;
-    if (here < 0.5 * most) break;  // finer than the substrate is flat: fewer and fewer votes
+    if (here < 0.5 * most)
+      break;  // finer than the flatness of the substrate: votes only decrease from here
   }
   return best;
 }
@@ -149,7 +152,8 @@ Residuals mark_inliers(const HeightField& field, const Mask& use, const Plane& p
   return r;
 }
 
-/// Least squares and inliers in turns, as long as the inliers determine a plane and grow in number.
+/// Alternates least-squares fits and selection of inliers, as long as the inliers determine a plane
+/// and their number grows.
 void refine(const HeightField& field, const Mask& use, const Watch& watch, HoughSummary& s) {
   Mask mask(field.z_nm.width(), field.z_nm.height());
   Residuals best = mark_inliers(field, use, s.plane, s.tolerance_nm, mask);
@@ -195,7 +199,7 @@ HoughVerdict judge(const HoughSummary& s) {
                                                            : HoughVerdict::clear;
 }
 
-/// Heights that are one plane to the last digit.
+/// The result for heights that are exactly one plane.
 HoughSummary exact_plane(const HeightField& field, const Mask& use, const Plane& plane) {
   HoughSummary s;
   s.plane = s.runner_up = plane;

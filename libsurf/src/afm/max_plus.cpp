@@ -12,8 +12,9 @@
 namespace surf::max_plus {
 namespace {
 
-/// Places of a line by distance from `apex`, of two the one of the larger index first: b is turned,
-/// and ties go to the lower and left sample of the original.
+/// Ranks the places of a line by their distance from `apex`; of two places at the same distance,
+/// the larger index comes first. b is rotated, so ties go to the lower and left sample of the
+/// original.
 std::vector<std::int32_t> ranks(int count, int apex, std::vector<int>& place_of_rank) {
   place_of_rank.resize(count);
   std::iota(place_of_rank.begin(), place_of_rank.end(), 0);
@@ -71,7 +72,8 @@ Kernel make_kernel(const Grid<Quanta>& b, int apex_x, int apex_y) {
 
 namespace {
 
-/// Largest of z[begin, begin + count) for many windows: two overlapping powers of two.
+/// The maximum of z[begin, begin + count) for many windows, from two overlapping windows whose
+/// length is a power of two.
 class RangeMax {
  public:
   RangeMax(std::size_t length, std::size_t longest) : levels_(std::bit_width(longest)) {

@@ -13,8 +13,8 @@ constexpr int count_of_v = SEMSURF_VECTOR_BYTES / 4;
 
 HWY_INLINE void load(V& v, const Quanta* p) { __builtin_memcpy(&v, p, sizeof v); }
 
-/// Keeps GCC from loading v a second time where it is used twice: loads are what is short. Clang
-/// does not allow it for vectors that the file's own target lacks.
+/// Keeps GCC from loading v twice where it is used twice, because loads are the bottleneck. Clang
+/// does not allow this for vectors that the file's own target lacks.
 HWY_INLINE void keep([[maybe_unused]] V& v) {
 #if defined(__x86_64__) && !defined(__clang__)
   asm("" : "+v"(v));
@@ -32,7 +32,7 @@ HWY_INLINE Quanta smallest(const V (&acc)[block_rows][block_vectors]) {
   return m;
 }
 
-/// Columns [begin, end) of a line of b, against the block that begins at `a`.
+/// Adds columns [begin, end) of a line of b, for the block that begins at `a`.
 HWY_INLINE void add_columns(const Quanta* a, const Quanta* b, int begin, int end,
                             V (&acc)[block_rows][block_vectors]) {
   constexpr int n = count_of_v;
@@ -49,7 +49,7 @@ HWY_INLINE void add_columns(const Quanta* a, const Quanta* b, int begin, int end
   }
 }
 
-/// A line of b against a block, leaving out what cannot exceed `floor`.
+/// Adds a line of b to a block, and skips what cannot exceed `floor`.
 HWY_INLINE void add_line(const Kernel& b, const Quanta* a, const Quanta* a_max, int line,
                          Quanta floor, V (&acc)[block_rows][block_vectors]) {
   const Quanta* b_max = b.chunk_max.data() + static_cast<std::ptrdiff_t>(line) * b.chunks;
@@ -80,7 +80,7 @@ void strip(const Kernel& b, const Padded& a, int y, int, int height, const Strip
   }
 }
 
-/// The column of row `b_row` of b that gives `sum` at the place `a` looks from, as its rank.
+/// The rank of the column in row `b_row` of b that gives `sum` at `a`.
 HWY_INLINE std::int32_t find_column(const Quanta* a, const Quanta* b_row, const std::int32_t* rank,
                                     int width, Quanta sum) {
   std::int32_t least = width;
@@ -106,7 +106,7 @@ void strip_with_contact(const Kernel& b, const Padded& a, int y, int width, int 
     int done = 0;
     for (const int line : b.order) {
       const std::ptrdiff_t at = (y + line) * static_cast<std::ptrdiff_t>(a.blocks) + block;
-      // What just reaches the floor may win a tie.
+      // A sum equal to the floor may still win a tie.
       const Quanta below = floor < lowest ? floor : floor - 1;
       if (a.line_max[at] + b.line_max[line] <= below) continue;
       V acc[block_rows][block_vectors];

@@ -6,7 +6,8 @@
 
 namespace surf {
 
-/// Of at least one value, the mean of the two middle ones if their number is even; reorders them.
+/// The median of at least one value: for an even number, the mean of the two middle ones. Reorders
+/// the values.
 inline double median_of(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());

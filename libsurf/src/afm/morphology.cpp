@@ -20,12 +20,12 @@ using max_plus::Quanta;
 using max_plus::quantise;
 using max_plus::TipQuanta;
 
-/// Where the maximum was found, in samples of the first operand; both empty if nobody asks.
+/// The positions of the maxima, in samples of the first operand; both empty if not wanted.
 struct Contacts {
   Grid<std::int32_t> x, y;
 };
 
-/// Known values become <= 0 again, the highest 0.
+/// Shifts the known values so that the highest is 0.
 void rebase(Heights& h) {
   const Quanta top = *std::max_element(h.z.data().begin(), h.z.data().end());
   if (top < max_plus::lowest) return;  // nothing is known
@@ -34,7 +34,7 @@ void rebase(Heights& h) {
   h.top += top;
 }
 
-/// Erosion is the dilation of what is upside down by the tip seen from the other side.
+/// Erosion is the dilation of the negative surface by the reflected tip.
 enum class Operation { dilation, erosion };
 
 double sign_of(Operation o) { return o == Operation::dilation ? 1.0 : -1.0; }
@@ -64,8 +64,8 @@ void check_factor(int upsample) {
                        "2 or 3 is usual");
 }
 
-/// One operation. Between samples surface and tip are bilinear, so their sum is bilinear in u in
-/// every cell and largest at a corner: on a finer grid the samples would come out the same (thesis,
+/// Makes one operation. Between samples, surface and tip are bilinear. So their sum is bilinear in
+/// u in every cell and largest at a corner, and a finer grid would give the same samples (thesis,
 /// C.3).
 HeightField apply(Operation operation, const HeightField& field, const Tip& tip,
                   const char* subject, const MorphologyOptions& o, Contacts* contacts = nullptr) {
@@ -79,7 +79,8 @@ HeightField apply(Operation operation, const HeightField& field, const Tip& tip,
   return to_field(out, sign, quantum, field);
 }
 
-/// `work` on what is interpolated to `upsample` samples per pitch, sampled back.
+/// Calls `work` on field and tip interpolated to `upsample` samples per pitch, and samples the
+/// result back.
 template <class Work>
 HeightField on_fine_grid(const HeightField& field, const Tip& tip, MorphologyOptions o,
                          const Work& work) {
@@ -103,7 +104,7 @@ MorphologyOptions part_of(MorphologyOptions o, double from, double to) {
   return o;
 }
 
-/// Two operations with one quantum, so that nothing is rounded in between.
+/// Makes two operations with the same quantum, so that nothing is rounded in between.
 HeightField apply_both(Operation first, const HeightField& field, const Tip& tip,
                        const char* subject, const MorphologyOptions& o) {
   max_plus::check_pair(field, tip, subject);
@@ -118,7 +119,7 @@ HeightField apply_both(Operation first, const HeightField& field, const Tip& tip
   Heights half = convolve(quantise(field, sign_of(first), quantum),
                           quantise(tip_of(first, tip), quantum, w, h), o.threads, nullptr,
                           o.watch.part(0, 0.5));
-  // The other way up, and below 0 again.
+  // Negates the intermediate heights and shifts them below 0 again.
   for (Quanta& z : half.z.data())
     if (z >= max_plus::lowest) z = -z;
   half.top = -half.top;

@@ -26,8 +26,9 @@ void validate_residual(const Grid<double>& residual_nm, const Mask& valid) {
 }
 
 /// Calls `visit(index, previous, carry, variance)` for each valid sample of a row from left to
-/// right: its mean given `previous`, the index of the last valid one, is carry times that one. The
-/// first of a row has carry 0 and the stationary variance.
+/// right. `previous` is the index of the last valid sample before it; given that sample's value,
+/// the mean is carry times the value. The first sample of a row has carry 0 and the stationary
+/// variance.
 template <class Visit>
 void follow_row(const AfmNoise& noise, const Mask& valid, std::size_t first, int width,
                 const Visit& visit) {

@@ -44,8 +44,8 @@ Moments moments(const Grid<double>& values, const Mask& valid) {
   return m;
 }
 
-/// The sum of products of values dx columns and dy rows apart, less `mean`, and the number of
-/// pairs.
+/// The sum of products of values that are dx columns and dy rows apart, relative to `mean`, and the
+/// number of pairs.
 std::pair<double, std::size_t> products(const Grid<double>& values, const Mask& valid, int dx,
                                         int dy, double mean) {
   double total = 0;

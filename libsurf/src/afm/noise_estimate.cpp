@@ -38,9 +38,9 @@ Covariances covariances(const HeightField& residual, const Mask& use) {
   return c;
 }
 
-/// A least-squares polynomial takes away the noise's power at frequency 0, r(0) (1 + a) / (1 - a),
-/// once for each of its coefficients (Brockwell and Davis 1991, 7.1): both covariances are low by
-/// the same.
+/// A least-squares polynomial removes the noise's power at frequency 0, r(0) (1 + a) / (1 - a),
+/// once for each of its coefficients (Brockwell and Davis 1991, 7.1). This lowers both covariances
+/// by the same amount.
 double removed_power(double r0, double r1, int terms, std::size_t samples) {
   double lost = 0;
   const double share = terms / static_cast<double>(samples);
@@ -62,12 +62,13 @@ NoiseEstimate with_errors(double r0, double alpha, std::size_t samples) {
   return e;
 }
 
-// Of an image with structure.
+// For images with structure.
 
 constexpr std::size_t most_distances = 4;  // k = 1 ... 4
 constexpr int most_bands = 8;
-constexpr double clip = 4;                    // standard deviations
-constexpr double clipped_variance = 0.99893;  // of a normal number within +-4 standard deviations
+constexpr double clip = 4;  // standard deviations
+// The variance of a normal number within +-4 standard deviations.
+constexpr double clipped_variance = 0.99893;
 constexpr double median_of_normal = 0.67448975019608171;
 constexpr double alpha_limit = 0.9;
 constexpr std::size_t enough_centres = 1'000'000;
@@ -76,10 +77,10 @@ using Differences = std::array<double, most_distances>;  // D_k about one sample
 
 struct Centres {
   std::size_t distances = 0;
-  std::vector<std::vector<Differences>> bands;  // of rows
+  std::vector<std::vector<Differences>> bands;  // bands of rows
 };
 
-/// False if a hole is too near.
+/// Returns false if a hole is too near.
 bool difference(const HeightField& f, int x, int y, std::size_t distances, Differences& d) {
   constexpr double weight[] = {1, -2, 1};
   d = {};
@@ -94,7 +95,7 @@ bool difference(const HeightField& f, int x, int y, std::size_t distances, Diffe
   return true;
 }
 
-/// Rows are skipped where there are more than enough.
+/// Skips rows if there are more centres than needed.
 Centres mixed_differences(const HeightField& field) {
   const int width = field.z_nm.width(), height = field.z_nm.height();
   Centres out;
@@ -122,7 +123,7 @@ double variance_from_median(const Centres& centres, std::size_t k) {
   return *middle * *middle / (median_of_normal * median_of_normal);
 }
 
-/// Sums over a band of what is not clipped.
+/// Sums over the values of a band that are not clipped.
 struct BandSum {
   Differences squares{};
   std::size_t count = 0;
@@ -161,7 +162,7 @@ double expected_variance(double alpha, std::size_t k) {
   return 12 * (1 - a) * (3 - a);
 }
 
-/// Least squares of the logarithms: on a lattice of alpha, then between its neighbours.
+/// Least-squares fit of the logarithms: first on a lattice of alpha, then between its neighbours.
 AfmNoise fit_model(const Differences& variance, std::size_t distances) {
   double log_s2 = 0;
   const auto misfit = [&](double alpha) {

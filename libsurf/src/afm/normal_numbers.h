@@ -9,7 +9,7 @@
 
 namespace surf {
 
-/// Independent standard normal numbers, a function of (seed, row), by Box and Muller.
+/// Independent standard normal numbers that are a function of (seed, row), by Box and Muller.
 class NormalNumbers {
  public:
   NormalNumbers(std::uint64_t seed, std::uint64_t row) : random_(seed, row, 0) {}

@@ -71,8 +71,8 @@ double choose_quantum(const HeightField& surface, const Tip& tip,
     throw InvalidInput("morphology",
                        fmt::format("heights of {:g} nm are out of all bounds", magnitude),
                        "Mark such samples as holes");
-  // Rounding adds a few quanta to the range. Whole numbers of quanta have to be exact in a double,
-  // and below 2^51 for `nearest`.
+  // Rounding adds a few quanta to the range. Whole numbers of quanta must be exact in a double, and
+  // below 2^51 for `nearest`.
   const double floor = std::max(std::ldexp(needed * 1.000001, -28), std::ldexp(magnitude, -50));
   const double finest = std::max(std::exp2(std::ceil(std::log2(floor) - 1)), 1e-150);
   if (options.quantum_nm == 0) return floor > 0 ? finest : 1;

@@ -13,7 +13,7 @@
 namespace surf {
 namespace {
 
-/// Where a new sample lies among the old ones: between `left` and the next, `t` of the way.
+/// The place of a new sample among the old ones: at the fraction `t` from `left` to the next.
 struct Place {
   int left = 0;
   double t = 0;
@@ -21,7 +21,7 @@ struct Place {
 
 Place place(double at, int count) {
   const double nearest = std::round(at);
-  if (std::abs(at - nearest) < 1e-9) at = nearest;  // what is meant to be a sample is one
+  if (std::abs(at - nearest) < 1e-9) at = nearest;  // snaps to a sample
   const int left = std::clamp(static_cast<int>(std::floor(at)), 0, count - 1);
   return {left, left == count - 1 ? 0.0 : at - left};
 }
@@ -121,8 +121,7 @@ bool is_whole(const CubicSample& at, const Grid<double>& z) {
   return true;
 }
 
-/// Replaces the bilinear samples of `fine` by cubic ones where the coarse ones around are all
-/// known.
+/// Replaces the bilinear samples of `fine` by cubic ones where all 16 coarse samples are known.
 void smooth_over(const Grid<double>& coarse, int factor, Grid<double>& fine) {
   for (int y = 0; y < fine.height(); ++y)
     for (int x = 0; x < fine.width(); ++x) {

@@ -18,7 +18,7 @@ Roughness measure_roughness(const HeightField& field, const Mask& use) {
       for (int x = 0; x < field.z_nm.width(); ++x)
         if (is_used(field, use, x, y)) visit(x, y, field.z_nm(x, y));
   };
-  // About a height of the plane first, so that a large offset costs no digits.
+  // Relative to a height of the plane first, so that a large offset costs no digits.
   double sum = 0, lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
   each([&](int, int, double z) {
     sum += z - r.tilt.height_nm;

@@ -16,7 +16,7 @@ namespace {
 constexpr int directions = 72;
 constexpr double rounding = 1e-9;
 
-/// Linear between samples; -infinity beside samples that the tip does not have.
+/// Interpolates linearly between samples; -infinity next to missing samples.
 double height_at(const Tip& t, double u, double v) {
   const int i = std::clamp(static_cast<int>(u), 0, t.z_nm.width() - 1),
             j = std::clamp(static_cast<int>(v), 0, t.z_nm.height() - 1);
@@ -26,7 +26,7 @@ double height_at(const Tip& t, double u, double v) {
                                        {1, 0, a * (1 - b)},
                                        {0, 1, (1 - a) * b},
                                        {1, 1, a * b}})
-    if (weight > rounding)  // 0 times -infinity is no number
+    if (weight > rounding)  // 0 times -infinity is NaN
       z += weight *
            t.z_nm(std::min(i + dx, t.z_nm.width() - 1), std::min(j + dy, t.z_nm.height() - 1));
   return z;
@@ -94,8 +94,8 @@ Tip tip_below(const std::vector<std::vector<double>>& profiles, double pitch_x, 
   for (int y = -half_y; y <= half_y; ++y)
     for (int x = -half_x; x <= half_x; ++x) {
       const double r = std::hypot(x * pitch_x, y * pitch_y) / step;
-      const std::size_t i =
-          std::min(static_cast<std::size_t>(r), z.size() - 2);  // corners go on as steeply
+      // Corners continue the last slope.
+      const std::size_t i = std::min(static_cast<std::size_t>(r), z.size() - 2);
       tip.z_nm(x + half_x, y + half_y) = z[i] + (r - static_cast<double>(i)) * (z[i + 1] - z[i]);
     }
   return tip;

@@ -25,8 +25,8 @@ Offsets medians(const HeightField& field, const Mask& use) {
   return out;
 }
 
-/// The sum of the steps from the first row that has samples; steps go from each such row to the
-/// last one.
+/// Sums the steps from the first row with samples. Steps are measured between successive rows with
+/// samples.
 Offsets sums_of_differences(const HeightField& field, const Mask& use) {
   Offsets out(static_cast<std::size_t>(field.z_nm.height()));
   std::vector<double> steps;
@@ -48,7 +48,7 @@ Offsets sums_of_differences(const HeightField& field, const Mask& use) {
   return out;
 }
 
-/// The offset of the nearest row that has one; of two, the lower one's.
+/// The offset of the nearest row that has one; of two, that of the lower row.
 double nearest(const Offsets& offsets, int y) {
   const int height = static_cast<int>(offsets.size());
   for (int distance = 0; distance < height; ++distance) {

@@ -9,7 +9,7 @@
 
 namespace surf {
 
-/// Throws InvalidInput unless the field is sound and the mask empty or of its size.
+/// Throws InvalidInput unless the field is valid and the mask is empty or of the field's size.
 inline void require_field(const HeightField& field, const Mask& use) {
   validate(field);
   if (use.empty() || (use.width() == field.z_nm.width() && use.height() == field.z_nm.height()))

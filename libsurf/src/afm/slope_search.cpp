@@ -12,14 +12,14 @@ namespace {
 constexpr std::size_t bins_per_slab = 8;
 constexpr double most_bins = 1 << 20;
 
-/// Offsets of all samples for one slope, in bins.
+/// Offsets of all samples for a given slope, in bins.
 class Offsets {
  public:
   explicit Offsets(const Votes& votes)
       : votes_(votes), residual_(votes.size()), bin_(votes.size()) {}
 
-  /// Afterwards the most samples in any slab of half height `half` lie in `most_in(bins_per_slab +
-  /// 1)` at most, and in `most_in(bins_per_slab)` at least.
+  /// Bins the offsets. The largest number of samples in any slab of half height `half` is then at
+  /// most `most_in(bins_per_slab + 1)` and at least `most_in(bins_per_slab)`.
   void fill(double a, double b, double half) {
     const auto fa = static_cast<float>(a), fb = static_cast<float>(b);
     const std::size_t n = votes_.size();
@@ -37,7 +37,7 @@ class Offsets {
     for (std::size_t i = 0; i < n; ++i) ++counts_[static_cast<std::size_t>(bin_[i])];
   }
 
-  /// The most samples in `width` bins beside each other, and the middle of these.
+  /// The largest number of samples in `width` adjacent bins, and the middle of these bins.
   std::pair<std::size_t, double> most_in(std::size_t width) const {
     unsigned sum = 0, most = 0;
     std::size_t at = 0;
@@ -51,7 +51,7 @@ class Offsets {
   }
 
  private:
-  /// In lanes, which a compiler may keep in one vector.
+  /// Computed in lanes, which a compiler may keep in one vector.
   std::pair<float, float> range() const {
     constexpr std::size_t lanes = 16;
     float low[lanes], high[lanes];
@@ -87,7 +87,7 @@ SlopedPlane count(Offsets& offsets, double a, double b, double tolerance) {
 struct Box {
   double a, b, half;
   std::size_t bound;
-  // Of equal bounds the smaller box first: it leads to a plane soonest.
+  // Of boxes with equal bounds, the smaller comes first: it leads to a plane sooner.
   bool operator<(const Box& other) const {
     return bound != other.bound ? bound < other.bound : half > other.half;
   }
@@ -129,8 +129,8 @@ SlopedPlane search_slopes(const Votes& votes, const SlopeSearch& search,
         const SlopedPlane here = count(offsets, a, b, search.tolerance);
         if (here.votes > best.votes) best = here;
         ++done;
-        if (4 * half <= search.tolerance)
-          continue;  // the corner of the box is off by 2 half: fine enough
+        // The corner of the box is off by 2 half: fine enough.
+        if (4 * half <= search.tolerance) continue;
         offsets.fill(a, b, search.tolerance + 2 * half);
         ++done;
         const std::size_t bound = std::min(box.bound, offsets.most_in(bins_per_slab + 1).first);

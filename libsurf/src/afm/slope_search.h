@@ -8,8 +8,8 @@
 
 namespace surf {
 
-/// Samples to vote: places in [-1, 1] across the image, heights in nm about a plane that fits
-/// roughly.
+/// Samples that vote: places in [-1, 1] across the image, heights in nm about a rough fit of a
+/// plane.
 struct Votes {
   std::vector<float> u, v, z;
   std::size_t size() const { return z.size(); }
@@ -29,9 +29,9 @@ struct SlopeSearch {
   Watch watch;               // its token alone
 };
 
-/// The plane with most votes within the tolerance, to within the height of a bin, an eighth of the
-/// slab. `known` are planes to begin with. Adds what was counted to `evaluated` and clears
-/// `complete` at the limit.
+/// Finds the plane with most votes within the tolerance. The tolerance is exact to the height of a
+/// bin, an eighth of the slab. `known` are initial candidates. Adds the number of counted planes to
+/// `evaluated`, and sets `complete` to false at the limit.
 SlopedPlane search_slopes(const Votes& votes, const SlopeSearch& search,
                           const std::vector<SlopedPlane>& known, std::size_t& evaluated,
                           bool& complete);

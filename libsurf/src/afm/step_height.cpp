@@ -22,7 +22,7 @@ class Regions {
         half_x_(std::max(1.0, 0.5 * (field.z_nm.width() - 1))),
         half_y_(std::max(1.0, 0.5 * (field.z_nm.height() - 1))) {}
 
-  /// What multiplies the parameters at a sample; false if it is in neither region.
+  /// The row of the design matrix for a sample. Returns false if the sample is in neither region.
   bool row(int x, int y, Row& row) const {
     if (!field_.is_valid(x, y)) return false;
     const bool in_first = first_(x, y), in_second = second_(x, y);
@@ -88,14 +88,13 @@ Fit fit(const HeightField& field, const Regions& regions) {
   return f;
 }
 
-/// X' R X for R = alpha^|i - j| within rows, by a running sum from the left and what it owes to the
-/// right.
+/// X' R X for R = alpha^|i - j| within rows, from a running sum over the samples to the left.
 std::vector<double> correlated_squares(const HeightField& field, const Regions& regions,
                                        double alpha) {
   std::vector<double> out(terms * terms, 0.0);
   Row row;
   for (int y = 0; y < field.z_nm.height(); ++y) {
-    Row before{};  // sum over samples to the left of alpha^distance times their rows
+    Row before{};  // sum of alpha^distance times their rows over the samples to the left
     for (int x = 0; x < field.z_nm.width(); ++x) {
       for (double& b : before) b *= alpha;
       if (!regions.row(x, y, row)) continue;
@@ -142,7 +141,7 @@ StepHeight measure_step(const HeightField& field, const Mask& first, const Mask&
   s.slope_y = f.values[3] / (regions.half_y() * field.pitch_y_nm);
   s.samples = f.samples;
   measure_residuals(field, regions, f, s);
-  // The row of (X'X)^-1 that belongs to the step, c: its variance is c' X'RX c s^2.
+  // c is the row of (X'X)^-1 that belongs to the step; the variance of the step is c' X'RX c s^2.
   std::vector<double> c(terms, 0.0);
   c[1] = 1;
   solve_factored(f.factor, c);

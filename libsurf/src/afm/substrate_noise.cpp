@@ -13,7 +13,7 @@ constexpr double deviations = 4;
 constexpr double most_tolerances = 3;
 constexpr int most_turns = 20;
 
-/// Marks what is within `limit` of 0 and returns its root mean square.
+/// Marks the samples within `limit` of 0 and returns their root mean square.
 double mark(const HeightField& residual, const Mask& use, double limit, Mask& mask) {
   double squares = 0, count = 0;
   for (int y = 0; y < mask.height(); ++y) {

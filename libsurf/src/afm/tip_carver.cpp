@@ -9,7 +9,7 @@
 #define HWY_TARGET_INCLUDE "afm/tip_carver.cpp"
 #include "core/each_target.h"
 
-// Loops over rows of 16 floats, as many as the widest vectors hold.
+// Loops over rows of 16 floats, the number that the widest vectors hold.
 HWY_BEFORE_NAMESPACE();
 namespace surf::HWY_NAMESPACE {
 
@@ -36,12 +36,12 @@ float excess(const float* __restrict tip, const float* __restrict threshold,
   for (int k = 0; k < count; k += lanes)
     for (int l = 0; l < lanes; ++l) {
       const float v = tip[k + l] - threshold[k + l] - allowed[k + l];
-      most[l] = v > most[l] ? v : most[l];  // not where v is NaN
+      most[l] = v > most[l] ? v : most[l];  // ignores NaN
     }
   return largest(most);
 }
 
-// Where the largest of tip - threshold - allowed is.
+// The position of the largest tip - threshold - allowed.
 int place_of_excess(const float* __restrict tip, const float* __restrict threshold,
                     const float* __restrict allowed, float value) {
   for (int k = 0;; k += lanes) {
@@ -54,7 +54,7 @@ int place_of_excess(const float* __restrict tip, const float* __restrict thresho
   }
 }
 
-// ways = tip - here where scan + tip - here >= -tolerance, else -infinity; rows of the scan run
+// ways = tip - here if scan + tip - here >= -tolerance, else -infinity. Rows of the scan are read
 // downwards.
 void find(float* __restrict ways, const float* __restrict tip, const float* __restrict scan,
           float here, float tolerance, int rows, int stride, std::ptrdiff_t scan_stride) {
@@ -80,12 +80,12 @@ float best_of(const float* __restrict ways, const float* __restrict scan, int ro
     for (int k = 0; k < stride; k += lanes)
       for (int l = 0; l < lanes; ++l) {
         const float v = scan[k + l] + ways[k + l];
-        most[l] = v > most[l] ? v : most[l];  // not where v is NaN
+        most[l] = v > most[l] ? v : most[l];  // ignores NaN
       }
   return largest(most);
 }
 
-// Where that is.
+// The position of that maximum.
 int place_of_best(const float* __restrict ways, const float* __restrict scan, int stride,
                   std::ptrdiff_t scan_stride, float value) {
   for (int first = 0;; first += stride, scan -= scan_stride)
@@ -141,7 +141,7 @@ void TipCarver::carve(const CarvedScan& scan, int x, int y, const CarvedTip& tip
    scan.bottom(x, y), tip.apex_tolerance, tip.height, tip.stride, scan.stride());
   const int count = tip.height * tip.stride;
   allowed_.assign(static_cast<std::size_t>(count), -infinity);
-  const auto try_way = [&](int i, int j, float offset) {  // the tip touches with its sample (i, j)
+  const auto try_way = [&](int i, int j, float offset) {  // contact at the tip's sample (i, j)
     HWY_DYNAMIC_DISPATCH(allow)
     (allowed_.data(), scan.top(x - i, y - j), offset, tip.height, tip.stride, scan.stride());
   };
@@ -155,8 +155,9 @@ void TipCarver::carve(const CarvedScan& scan, int x, int y, const CarvedTip& tip
         demand[k] = std::min(demand[k], allowed_[k] + tip.threshold[k]);
     return;
   }
-  // Of many ways few are needed: the sample that those so far allow the least is given the way that
-  // allows it the most. Where that is not enough, no way is, and its demand is known.
+  // Few of many contacts are needed. Repeatedly take the sample with the largest excess over what
+  // the contacts so far allow, and add the contact that allows this sample the most. If that is not
+  // enough, no contact is, and the demand on the sample is known.
   for (;;) {
     const float worst =
         HWY_DYNAMIC_DISPATCH(excess)(tip.z.data(), tip.threshold.data(), allowed_.data(), count);
@@ -164,10 +165,10 @@ void TipCarver::carve(const CarvedScan& scan, int x, int y, const CarvedTip& tip
     const int k = HWY_DYNAMIC_DISPATCH(place_of_excess)(tip.z.data(), tip.threshold.data(),
                                                         allowed_.data(), worst);
     const int u = k % tip.stride, v = k / tip.stride;
-    const float* around = scan.top(x - (tip.width - 1) + u, y + v);  // of mirrored sample (0, 0)
+    const float* around = scan.top(x - (tip.width - 1) + u, y + v);  // at mirrored sample (0, 0)
     const float best =
         HWY_DYNAMIC_DISPATCH(best_of)(ways_.data(), around, tip.height, tip.stride, scan.stride());
-    if (best == -infinity) return;  // no way at all
+    if (best == -infinity) return;  // no contact is possible
     const auto at = static_cast<std::size_t>(k);
     if (best < tip.z[at] - tip.threshold[at]) {
       demand[at] = std::min(demand[at], best + tip.threshold[at]);
@@ -176,7 +177,7 @@ void TipCarver::carve(const CarvedScan& scan, int x, int y, const CarvedTip& tip
     }
     const int w =
         HWY_DYNAMIC_DISPATCH(place_of_best)(ways_.data(), around, tip.stride, scan.stride(), best);
-    if (best == infinity) allowed_[at] = infinity;  // beyond the border: all that is there
+    if (best == infinity) allowed_[at] = infinity;  // beyond the border everything is allowed
     try_way(tip.width - 1 - w % tip.stride, w / tip.stride, ways_[static_cast<std::size_t>(w)]);
   }
 }

@@ -8,7 +8,7 @@
 
 namespace surf {
 
-/// A scan made ready for tips: heights as floats, between a bottom that places tips and a top that
+/// A scan prepared for carving: heights as floats between a bottom that places tips and a top that
 /// carves them, with a margin in which everything is allowed.
 class CarvedScan {
  public:
@@ -17,9 +17,10 @@ class CarvedScan {
 
   int width() const { return width_; }
   int height() const { return height_; }
-  /// +infinity where there is a hole, and beyond the border by as much as the tip is wide.
+  /// The top of the layer: +infinity in holes, and beyond the border up to a distance of the tip's
+  /// size.
   const float* top(int x, int y) const { return &top_[offset(x, y)]; }
-  /// -infinity where there is a hole.
+  /// The bottom of the layer: -infinity in holes.
   float bottom(int x, int y) const { return bottom_[offset(x, y)]; }
   std::ptrdiff_t stride() const { return stride_; }
 
@@ -37,11 +38,12 @@ class CarvedScan {
 struct CarvedTip {
   int width = 0, height = 0, apex_x = 0, apex_y = 0;
   int stride = 0;                   ///< a multiple of 16
-  std::vector<float> z, threshold;  ///< of a sample: lowered only by more than that
-  std::vector<float> mirrored;  ///< z with each row backwards: as the scan runs where samples touch
+  std::vector<float> z, threshold;  ///< a sample is lowered only by more than its threshold
+  /// z with each row reversed, which is the order of the scan's samples at contact.
+  std::vector<float> mirrored;
   float apex_tolerance = 0;
 
-  /// Sets a sample, k = row * stride + column.
+  /// Sets sample k = row * stride + column.
   void lower(std::size_t k, float value) {
     z[k] = value;
     const auto row = k - k % static_cast<std::size_t>(stride);
@@ -51,18 +53,19 @@ struct CarvedTip {
   float at(int i, int j) const { return z[static_cast<std::size_t>(j * stride + i)]; }
 };
 
-/// What one point of a scan demands of a tip.
+/// Computes the demands of one point of a scan on a tip.
 class TipCarver {
  public:
-  /// Lowers `demand` (like the tip's samples) to what point (x, y) allows, where that is below the
-  /// tip by more than its threshold.
+  /// Lowers `demand` (laid out like the tip's samples) to what point (x, y) allows, for samples
+  /// that are higher than that by more than their threshold.
   void carve(const CarvedScan& scan, int x, int y, const CarvedTip& tip,
              std::vector<float>& demand);
 
  private:
-  // Of each sample that can touch: tip - scan(x, y), or -infinity where the apex would stick out.
+  // For each sample that can touch: tip - scan(x, y); -infinity if the apex would penetrate the
+  // scan.
   std::vector<float> ways_;
-  std::vector<float> allowed_;  // by the ways tried so far
+  std::vector<float> allowed_;  // the height that the contacts tried so far allow
 };
 
 }  // namespace surf

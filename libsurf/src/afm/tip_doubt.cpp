@@ -18,8 +18,8 @@ namespace {
 constexpr double widest_radius = 100;  // in widths of the tip
 constexpr double most_noise = 0.5;     // of the scan's variance
 
-/// The end of a blind tip is flat where it falls by less than the threshold: then as deep as it has
-/// samples.
+/// Thresholds make the end of a blind tip flat where it falls by less than the threshold. All
+/// samples are fitted then.
 TipMeasures measure_whole_tip(const Tip& tip) {
   const TipMeasures end = measure_tip(tip);
   double depth_nm = 0;

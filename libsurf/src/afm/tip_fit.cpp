@@ -14,7 +14,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace surf::HWY_NAMESPACE {
 
-// Where surface + offset is above what is made, it is made by `sample`, and what was is next.
+// Where surface + offset exceeds the dilation `made`, `sample` becomes the contact, and the former
+// dilation becomes `next`.
 void raise(float* __restrict made, float* __restrict next, std::int32_t* __restrict touching,
            std::int32_t* __restrict next_touching, const float* __restrict surface, float offset,
            std::int32_t sample, int count) {
@@ -39,10 +40,11 @@ namespace {
 HWY_EXPORT(raise);
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr double cost = 2;            // of a free pixel, in units of the misfit (Stein, Akaike)
-constexpr int between_contacts = 4;   // steps along the same contacts
-constexpr int between_thinning = 16;  // pixels taken away too early leave the tip blunt
-constexpr double step = 0.5;  // of the way to where the pixels in contact would have their mean
+constexpr double cost = 2;           // cost of a free pixel, in units of the misfit (Stein, Akaike)
+constexpr int between_contacts = 4;  // steps with the same contacts
+constexpr int between_thinning = 16;  // pixels that are removed too early leave the tip blunt
+// Share of the way to the mean that the pixels in contact would have.
+constexpr double step = 0.5;
 
 }  // namespace
 
@@ -102,11 +104,12 @@ void TipFit::dilate(Frame& f) const {
   }
 }
 
-// Takes surface pixels away that gain less than they cost in freedom.
+// Removes surface pixels that reduce the misfit by less than they cost in freedom.
 void TipFit::thin(Frame& f) const {
   const double of_v = (1 + noise_.alpha * noise_.alpha) / noise_.innovation_nm2;
   std::vector<float> gain(f.surface.size(), 0);
-  std::vector<std::uint8_t> needed(f.surface.size(), 0);  // by one that is taken away
+  std::vector<std::uint8_t> needed(f.surface.size(),
+                                   0);  // bits: 1 must stay, 2 replaces a removed pixel, 4 removed
   const auto at = [&](int x, int y, std::int32_t sample) {
     return static_cast<std::size_t>(
         surface_at(f, x, y, samples_[static_cast<std::size_t>(sample)]));
@@ -122,7 +125,7 @@ void TipFit::thin(Frame& f) const {
     const double now = f.made[k] - f.scan[k], then = f.next[k] - f.scan[k];
     gain[at(x, y, f.touching[k])] += static_cast<float>(of_v * (then * then - now * now));
   });
-  // One after the other; whose place another takes must stay.
+  // One pixel after the other. A pixel that replaces a removed one must stay.
   each_pixel([&](int x, int y, std::size_t k) {
     const std::size_t own = at(x, y, f.touching[k]);
     if (gain[own] >= cost || f.next_touching[k] < 0) needed[own] |= 1;
@@ -131,8 +134,8 @@ void TipFit::thin(Frame& f) const {
     const std::size_t own = at(x, y, f.touching[k]);
     if (needed[own] & 1) return;
     const std::size_t other = at(x, y, f.next_touching[k]);
-    if (needed[own] & 2) return;  // another's place is taken by it
-    if (needed[other] & 4) {      // its own place would be taken by one that goes
+    if (needed[own] & 2) return;  // it replaces another pixel
+    if (needed[other] & 4) {      // its replacement is removed
       needed[own] |= 1;
       return;
     }
@@ -148,7 +151,7 @@ void TipFit::thin(Frame& f) const {
   });
 }
 
-// What the pixels in contact make, where they are now.
+// Updates the dilation at unchanged contacts.
 void TipFit::follow(Frame& f) const {
   for (int y = 0; y < f.height; ++y)
     for (int x = 0; x < f.width; ++x) {
@@ -160,7 +163,7 @@ void TipFit::follow(Frame& f) const {
     }
 }
 
-// Moves the surface, adds to the tip's slope and contacts, and to misfit and freedom.
+// Moves the surface, and adds to the tip's slope, to the contacts, and to misfit and freedom.
 void TipFit::pull(Frame& f, std::vector<double>& slope) {
   Grid<double> residual(f.width, f.height), gradient;
   Mask valid(f.width, f.height, 1);
@@ -170,7 +173,7 @@ void TipFit::pull(Frame& f, std::vector<double>& slope) {
       valid(x, y) = std::isfinite(f.scan[k]) && f.touching[k] >= 0;
       residual(x, y) = valid(x, y) ? f.made[k] - f.scan[k] : 0;
     }
-  log_likelihood(residual, noise_, valid, &gradient);  // its derivative is -R^-1 e
+  log_likelihood(residual, noise_, valid, &gradient);  // the derivative is -R^-1 e
   for (std::size_t k = 0; k < residual.size(); ++k)
     misfit_ -= residual.data()[k] * gradient.data()[k];
   surface_slope_.assign(f.surface.size(), 0);
@@ -198,7 +201,7 @@ void TipFit::iterate(int times) {
   const double sigma = std::sqrt(noise_.variance_nm2());
   const double curvature = (1 + noise_.alpha * noise_.alpha) / noise_.innovation_nm2;
   std::vector<double> slope(samples_.size());
-  for (int n = 0; n <= times; ++n) {  // the last round only looks
+  for (int n = 0; n <= times; ++n) {  // the last round only evaluates
     std::fill(slope.begin(), slope.end(), 0.0);
     contacts_.assign(samples_.size(), 0);
     misfit_ = freedom_ = 0;
@@ -230,8 +233,8 @@ double TipFit::risk_when_thinned() const {
 }
 
 Grid<double> TipFit::standard_errors() const {
-  // A pixel in contact tells the sum of the surface and the tip there; with as many free surface
-  // pixels as there are, the variance of each is the noise's.
+  // A pixel in contact measures the sum of surface and tip there. There are so many free surface
+  // pixels that each has the variance of the noise, which makes two variances per contact.
   Grid<double> out(tip_.z_nm.width(), tip_.z_nm.height(), std::numeric_limits<double>::infinity());
   for (std::size_t s = 0; s < samples_.size(); ++s)
     if (contacts_[s] > 0)

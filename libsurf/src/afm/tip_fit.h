@@ -10,26 +10,26 @@
 
 namespace surf {
 
-/// A tip and the surfaces under it, fitted to scans: see best_tip.h. The surfaces reach beyond the
-/// scans by as much as the tip.
+/// A tip and the surfaces under it, fitted to scans: see best_tip.h. The surfaces extend beyond the
+/// scans by the size of the tip.
 class TipFit {
  public:
   TipFit() = default;
 
-  /// Surfaces begin as the scans' erosion by the tip.
+  /// The surfaces start as the erosions of the scans by the tip.
   TipFit(const std::vector<HeightField>& scans, const AfmNoise& noise, const Tip& start);
 
-  /// Scaled gradient steps. What is fitted is then `misfit` and so on.
+  /// Makes scaled gradient steps. Updates `misfit`, `freedom` and `risk`.
   void iterate(int times);
 
   const Tip& tip() const { return tip_; }
   double misfit() const { return misfit_; }    ///< per pixel
   double freedom() const { return freedom_; }  ///< touched surface pixels per pixel
   double risk() const { return misfit_ + 2 * freedom_; }
-  /// The same after surface pixels are taken away that gain too little.
+  /// The risk after removing surface pixels that do not reduce the misfit enough.
   double risk_when_thinned() const;
-  /// Of each sample of the tip, by the number of pixels it touches in: infinity where there is
-  /// none.
+  /// Standard error of each sample of the tip, from the number of its contacts; infinity without
+  /// contact.
   Grid<double> standard_errors() const;
 
  private:
@@ -39,13 +39,13 @@ class TipFit {
     std::ptrdiff_t stride;       // of the surface, which has the tip's margin
     std::vector<float> scan;     // NaN: a hole
     std::vector<float> surface;  // -infinity: not under any pixel
-    std::vector<float> made,
-        next;  // the dilation, and what it would be without the pixel in contact
-    std::vector<std::int32_t> touching, next_touching;  // sample of the tip
+    // The dilation, and its value without the surface pixel in contact.
+    std::vector<float> made, next;
+    std::vector<std::int32_t> touching, next_touching;  // index of the tip's sample in contact
   };
   struct Sample {
     int i, j;
-  };  // of the tip, that can touch anything
+  };  // a sample of the tip that can touch the surface
 
   void dilate(Frame& frame) const;
   void follow(Frame& frame) const;

@@ -21,7 +21,7 @@ struct Sample {
   double x, y, z;
 };
 
-/// Samples no deeper than `depth` that are joined to the apex through such samples.
+/// Samples no deeper than `depth` that are connected to the apex through such samples.
 std::vector<Sample> end_of(const Tip& tip, double depth) {
   Mask seen(tip.z_nm.width(), tip.z_nm.height(), 0);
   std::vector<std::pair<int, int>> open{{tip.apex_x, tip.apex_y}};
@@ -137,7 +137,7 @@ void fit_sphere(const std::vector<Sample>& samples, TipMeasures& out) {
   out.sphere_residual_nm = std::sqrt(sum / static_cast<double>(samples.size()));
 }
 
-/// The highest of the samples at the rim: sections below it are cut off.
+/// The depth of the highest sample at the rim: sections below it are cut off.
 double rim_depth(const Tip& tip) {
   double highest = -std::numeric_limits<double>::infinity();
   const int w = tip.z_nm.width(), h = tip.z_nm.height();

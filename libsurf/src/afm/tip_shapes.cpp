@@ -36,7 +36,7 @@ Tip sample(const TipSampling& s, const Height& height) {
   for (int y = 0; y < s.height; ++y)
     for (int x = 0; x < s.width; ++x) {
       const double z = height(-(x - tip.apex_x) * s.pitch_x_nm, -(y - tip.apex_y) * s.pitch_y_nm);
-      tip.z_nm(x, y) = z > 0 ? -z : 0.0;  // rounding at the apex
+      tip.z_nm(x, y) = z > 0 ? -z : 0.0;  // rounding may make z negative at the apex
     }
   return tip;
 }
@@ -77,9 +77,9 @@ std::vector<Edge> edges_of(const std::vector<Slope>& faces) {
   return edges;
 }
 
-/// Lowest point above (x, y) of the pyramid z = max of the faces moved out by `radius` to all
-/// sides: min over q of z(q) - sqrt(radius^2 - |(x, y) - q|^2), which lies above a face, an edge or
-/// the apex.
+/// The height over (x, y) of the pyramid z = max of the faces, offset by `radius` to all sides: min
+/// over q of z(q) - sqrt(radius^2 - |(x, y) - q|^2). The minimum lies above a face, an edge or the
+/// apex.
 double rounded(const std::vector<Slope>& faces, const std::vector<Edge>& edges, double radius,
                double x, double y) {
   double z = none;

@@ -17,12 +17,12 @@ namespace surf {
 
 namespace {
 
-constexpr double peak_share = 1e-3;  // of the residuals
-constexpr double as_near = 1.1;      // times the least excess
-constexpr double too_much = 6;       // even of the least excess
-constexpr double smooths = 0.6;      // of the most noise that any tip's opening takes away
-constexpr double near_jump =
-    0.1;  // share of the thresholds between choice and jump that counts as near
+constexpr double peak_share = 1e-3;  // share of the residuals that are peaks
+constexpr double as_near = 1.1;      // consistent: at most this times the least excess
+constexpr double too_much = 6;       // no tip explains the scans if the least excess is larger
+constexpr double smooths = 0.6;      // least share of the largest expected residual
+// Distance between choice and jump that counts as near, as a share of the thresholds.
+constexpr double near_jump = 0.1;
 
 void check(const TipSweepOptions& o) {
   validate(o.noise);
@@ -55,7 +55,7 @@ CarvedTip carved(const Tip& tip) {
   return out;
 }
 
-// Of all scans together.
+// Residuals of all scans together.
 struct Residuals {
   double rms = 0, peaks = 0;
 };
@@ -120,7 +120,7 @@ class Opener {
   }
 
  private:
-  // NaN where the opening is not known; what is left of the heights is added to `left`.
+  // Opens `z`; NaN where the opening is not known. Appends the remaining heights to `left`.
   Grid<float> open(const Grid<float>& z, const CarvedTip& tip, std::vector<float>& left) const {
     const CarvedScan scan(z, 0, tip.width, tip.height);
     Grid<float> out = explained_height(scan, tip, threads_);
@@ -139,7 +139,7 @@ class Opener {
   std::vector<Grid<double>> noise_;  // draw by draw, scan by scan
 };
 
-// Two tips between which the volume falls by the largest factor: the index of the broader.
+// The index of the broader of the two tips between which the volume falls by the largest factor.
 std::size_t above_the_jump(const std::vector<SweptTip>& curve) {
   std::size_t jump = curve.size() - 1;
   double largest = 0;
@@ -155,7 +155,7 @@ std::size_t above_the_jump(const std::vector<SweptTip>& curve) {
   return jump;
 }
 
-// x with a normal probability of p above it, p below 0.5 (bisection of erfc).
+// The x that a standard normal number exceeds with probability p < 0.5 (bisection of erfc).
 double normal_quantile_above(double p) {
   double low = 0, high = 40;
   for (int n = 0; n < 80; ++n) {
@@ -185,7 +185,8 @@ TipSweep sweep_tips(const std::vector<HeightField>& scans, const TipSweepOptions
   TipSweep out;
   const Opener opener(scans, options);
   for (int n = options.thresholds - 1; n >= 0;
-       --n) {  // each begins with the tip of the threshold above
+       // Each threshold starts from the tip of the threshold above it.
+       --n) {
     SweptTip swept;
     swept.threshold_nm = least + (most - least) * n / (options.thresholds - 1);
     blind.threshold_nm = swept.threshold_nm;
@@ -199,8 +200,8 @@ TipSweep sweep_tips(const std::vector<HeightField>& scans, const TipSweepOptions
   }
   std::reverse(out.curve.begin(), out.curve.end());
   out.jump = above_the_jump(out.curve);
-  // A tip that the noise has made leaves the noise alone: it explains everything, and means
-  // nothing.
+  // A tip that is sharpened by noise explains everything, because it leaves the noise in the scan;
+  // it must not count.
   double most_expected = 0, least_excess = HUGE_VAL;
   for (const SweptTip& t : out.curve) most_expected = std::max(most_expected, t.expected_nm);
   const auto counts = [&](const SweptTip& t) { return t.expected_nm >= smooths * most_expected; };
@@ -226,8 +227,8 @@ double outer_threshold_nm(const AfmNoise& noise, double pixels, double samples) 
   validate(noise);
   constexpr double risk = 0.05;
   const double sigma = std::sqrt(noise.variance_nm2());
-  // Either no pixel is off by half of it, up or down, or no two that a tip brings together by all
-  // of it.
+  // Either no pixel deviates by more than half of the threshold, or no pair of pixels that the tip
+  // can bring together differs by more than the threshold.
   const double singly = 2 * normal_quantile_above(risk / (2 * pixels));
   const double in_pairs = std::numbers::sqrt2 * normal_quantile_above(risk / (pixels * samples));
   return sigma * std::min(singly, in_pairs);

@@ -9,7 +9,7 @@
 namespace surf::parameters_detail {
 namespace {
 
-/// As people write it, "1keV", where that is read back exactly.
+/// The value as a person writes it, "1keV", if that text is read back exactly; else its exact text.
 std::string shown(const Parameter& about, const Field& field) {
   const std::string text = field.text();
   if (field.kind() != FieldKind::number || text.empty()) return text;

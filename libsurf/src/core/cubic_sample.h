@@ -8,14 +8,14 @@
 
 namespace surf {
 
-/// A place between samples, and the weights of the 4 x 4 samples around it: cubic convolution (Keys
-/// 1981, doi:10.1109/TASSP.1981.1163711), which reproduces parabolas and has continuous
-/// derivatives. Beyond the border the outermost samples go on; their weights add up, so that the
-/// transpose is exact.
+/// A place between samples, and the weights of the 4 x 4 samples around it for cubic convolution
+/// (Keys 1981, doi:10.1109/TASSP.1981.1163711), which reproduces parabolas and has continuous
+/// derivatives. Beyond the border the outermost sample is repeated and its weights add up, so that
+/// `scatter` is the exact transpose of `value`.
 struct CubicSample {
   int column[4], row[4];
   double wx[4], wy[4];  ///< weights
-  double dx[4], dy[4];  ///< their derivatives by the place, per sample
+  double dx[4], dy[4];  ///< derivatives of the weights by the place, per sample
 
   CubicSample(double x, double y, int width, int height) {
     set(x, width, column, wx, dx);

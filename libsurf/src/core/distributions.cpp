@@ -7,10 +7,10 @@
 namespace surf {
 namespace {
 
-constexpr double few =
-    10;  // below it simple ways are as quick, and transformed rejection is not valid
+// Below it the simple methods are as quick, and transformed rejection is not valid.
+constexpr double few = 10;
 
-/// ln k!, by Stirling's series from 10 on; its error is below 1e-12.
+/// ln k!. Stirling's series is used for k >= 10; its error is below 1e-12.
 double log_factorial(std::int64_t k) {
   if (k < 10) {
     double product = 1;
@@ -46,7 +46,7 @@ std::int64_t poisson_by_rejection(double mean, RandomStream& random) {
   }
 }
 
-/// The waiting time for each success is geometric.
+/// The waiting time until each success is geometrically distributed.
 std::int64_t binomial_by_waiting(std::int64_t trials, double probability, RandomStream& random) {
   const double log_failure = std::log1p(-probability);
   std::int64_t successes = 0;

@@ -29,7 +29,7 @@ std::string with_field_words(std::string_view text, const FieldWord& word) {
     if (close == text.npos) return out.append(text.substr(from));
     const std::string_view inside = text.substr(open + 1, close - open - 1);
     const std::string_view field = inside.substr(0, inside.find('='));
-    if (!is_field(field)) {  // its second backtick may be the first one of a field
+    if (!is_field(field)) {  // the closing backtick may open a field
       out.append(text.substr(from, close - from));
       from = close;
       continue;

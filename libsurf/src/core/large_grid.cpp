@@ -22,7 +22,7 @@ namespace {
                   "Free some space, write the output to a larger disk, or ask for fewer pixels");
 }
 
-// A page of a file that the disk has no room for would end the program when it is used.
+// Without a reservation, a full disk would end the program when it first uses a page.
 int take_space(int file, std::size_t bytes) {
 #ifdef __linux__
   return ::posix_fallocate(file, 0, static_cast<off_t>(bytes));

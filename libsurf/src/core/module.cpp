@@ -17,7 +17,7 @@
 namespace surf {
 namespace {
 
-// Known before main: constructors of other sources add to it, in any order.
+// Filled before main by constructors of other source files, in any order.
 struct Linked {
   const char* name;
   ModuleEntry entry;
@@ -32,8 +32,8 @@ int linked_count = 0;
                     fmt::format("Install {} and semsurf with it", module.needs));
 }
 
-// Libraries that cannot start their threads while they are loaded end the program: they are not
-// asked to.
+// Some libraries start threads while they are loaded, and end the program if they cannot. They are
+// not loaded if the address space is too small for that.
 void require_address_space(const ModuleName& module) {
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
@@ -53,7 +53,7 @@ void require_address_space(const ModuleName& module) {
 ModuleEntry loaded_entry(const ModuleName& module) {
   require_address_space(module);
   const std::string file = fmt::format("{}/{}.so", module_folder(), module.name);
-  // Local: what one module brings is not to take the place of what another one needs.
+  // RTLD_LOCAL: a symbol of one module must not replace a symbol that another module needs.
   void* const handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!handle) {
     std::error_code error;

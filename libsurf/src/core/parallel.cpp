@@ -43,8 +43,8 @@ class Queue {
   }
 
  private:
-  // A unit that was handed out always runs, so the lowest failing one is the same for any number
-  // of threads, and so is the message.
+  // A unit that was handed out always runs. So the lowest failing unit, and hence the message, is
+  // the same for any number of threads.
   void fail(std::size_t unit) {
     const std::lock_guard lock(mutex_);
     if (!error_ || unit < failed_unit_) {
@@ -72,7 +72,7 @@ int resolve_threads(int requested) {
   }
   if (requested > 0) return requested;
 #if defined(__linux__)
-  // Starters of MPI programs and batch systems leave a process fewer processors than there are.
+  // MPI launchers and batch systems may restrict a process to a part of the processors.
   cpu_set_t allowed;
   if (sched_getaffinity(0, sizeof allowed, &allowed) == 0 && CPU_COUNT(&allowed) > 0)
     return CPU_COUNT(&allowed);
@@ -90,7 +90,7 @@ void parallel_for(std::size_t count, int threads,
     others.reserve(static_cast<std::size_t>(workers));
     for (int worker = 1; worker < workers; ++worker) {
       std::jthread other = try_thread([&queue, worker] { queue.run(worker); });
-      if (!other.joinable()) break;  // those there are do all the work
+      if (!other.joinable()) break;  // the threads that were started do all the work
       others.push_back(std::move(other));
     }
     queue.run(0);

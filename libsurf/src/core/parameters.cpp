@@ -64,7 +64,7 @@ void check_number(double value, const Parameter& about, const std::string& subje
     refuse_value(format_value(value, about.unit), about, subject, whole);
 }
 
-/// A field whose text is read and written by functions of its type.
+/// Converts between a value of type T and its text.
 template <class T>
 struct Reading;
 
@@ -88,7 +88,7 @@ struct ReadingWhole {
     text = trimmed(text);
     Whole value = 0;
     if (!read_all(text, value)) {
-      double real = 0;  // "1e6" is one, too
+      double real = 0;  // "1e6" is a whole number, too
       if (!read_all(text, real) || !std::isfinite(real) || real != std::floor(real))
         throw UsageError(
             subject, fmt::format("'{}' is not a whole number", text),
@@ -98,7 +98,7 @@ struct ReadingWhole {
       const double highest =
           std::min(most_exact, static_cast<double>(std::numeric_limits<Whole>::max()));
       if (real < lowest || real > highest) {
-        Parameter of_type = about;  // where the parameter itself has no limits
+        Parameter of_type = about;  // the limits of the type, if the parameter has none
         if (format_limits(about).empty())
           of_type.limits = within(lowest, static_cast<double>(std::numeric_limits<Whole>::max()));
         refuse_value(fmt::format("'{}'", text), of_type, subject, true);
@@ -200,7 +200,8 @@ class List final : public Field {
     value_.clear();
     add(text, subject);
   }
-  /// Names between commas, which may be in names of files.
+  /// Appends names that are separated by commas. Names of files may contain commas, so a file's
+  /// text is not split.
   void add(std::string_view text, const std::string& subject) override {
     if (about_.file != FileRole::none) {
       value_.emplace_back(text);
@@ -271,7 +272,7 @@ class Choice final : public Field {
 
   int& index_;
   const std::vector<std::string>& names_;
-  const char* none_;  // null: there is always one
+  const char* none_;  // null: a choice is always made
 };
 
 class Form final : public Field {

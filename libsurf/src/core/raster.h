@@ -7,13 +7,13 @@
 
 namespace surf {
 
-/// What messages call the numbers of a raster.
+/// The words for a raster in messages.
 struct RasterWords {
   const char* raster;  ///< "A surface"
   const char* value;   ///< "height"
 };
 
-/// What `HeightField` and `PlacedImage` have to be. Throws InvalidInput, naming `subject`.
+/// Checks the invariants of `HeightField` and `PlacedImage`. Throws InvalidInput, naming `subject`.
 void validate_raster(const Placement& placement, const Grid<double>& values, const Mask& valid,
                      const RasterWords& words, const char* subject);
 

@@ -9,7 +9,8 @@
 namespace surf {
 namespace {
 
-constexpr double rounding = 1e-9;  // samples beyond the border that still count as on it
+// A place this far beyond the border, in samples, counts as on the border.
+constexpr double rounding = 1e-9;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
@@ -28,7 +29,7 @@ double sample_image(const PlacedImage& image, Point2 place_nm) {
                                      {i + 1, j, a * (1 - b)},
                                      {i, j + 1, (1 - a) * b},
                                      {i + 1, j + 1, a * b}}) {
-    if (weight == 0) continue;  // it may be no sample at all
+    if (weight == 0) continue;  // the sample may not exist
     if (!image.is_valid(x, y)) return nan;
     sum += weight * image.values(x, y);
   }

@@ -15,7 +15,7 @@
 namespace surf {
 namespace {
 
-// Scales are kept as a quotient of whole numbers where they are: "9pm" is then exactly 0.009.
+// Scales are quotients of whole numbers where possible, so that "9pm" is exactly 0.009.
 struct Unit {
   std::string_view name;
   double multiply;
@@ -42,7 +42,7 @@ constexpr std::array time_units{Unit{"us", 1, 1},   Unit{"\u00b5s", 1, 1}, Unit{
 constexpr std::array duration_units{Unit{"s", 1, 1}, Unit{"min", 60, 1}, Unit{"h", 3600, 1},
                                     Unit{"d", 86400, 1}, Unit{"ms", 1, 1e3}};
 
-/// What a message says about a kind of quantity.
+/// The words for a kind of quantity in messages.
 struct Kind {
   const char* name;
   std::string_view default_unit;
@@ -162,7 +162,7 @@ double parse_energy_ev(std::string_view text, std::string_view subject) {
   if (unit == "mev" && q.unit[0] == 'm') {
     refuse(subject, fmt::format("'{}' may mean milli- or megaelectronvolt", text), energy_kind);
   }
-  // The name in the message is the person's own spelling.
+  // The message repeats the unit as the person spelled it.
   const auto known = std::ranges::find(energy_units, unit, &Unit::name);
   return scaled(
       q.value,
@@ -198,7 +198,7 @@ double parse_share(std::string_view text, std::string_view subject) {
   const bool percent = text.ends_with('%');
   std::string number(text.substr(0, text.size() - (percent ? 1 : 0)));
   while (number.ends_with(' ')) number.pop_back();
-  // Moving the point in the text, not the number: 1.3% is to be the same as 0.013.
+  // The decimal point is moved in the text, not in the number, so that 1.3% equals 0.013 exactly.
   if (percent && number.find_first_of("eE") == std::string::npos) number += "e-2";
   double share = 0;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), share);
@@ -241,7 +241,7 @@ std::string format_length(double length_nm, int digits) {
   std::from_chars(exponent_text + (*exponent_text == '+'), rounded.data() + rounded.size(),
                   exponent);
 
-  // Far from all that is ever measured, zeros would hide the number.
+  // For lengths far from anything that is measured, zeros would hide the number.
   constexpr int first_digit_of_100_km = 14, first_digit_of_a_femtometre = -6;
   if (exponent >= first_digit_of_100_km)
     return fmt::format("{:.{}e} m", length_nm / 1e9, digits - 1);

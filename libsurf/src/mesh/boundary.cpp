@@ -4,8 +4,8 @@
 namespace surf {
 namespace {
 
-/// Sides without an answer: at an edge that is run through n times one way and m < n times the
-/// other, the last n - m of the former.
+/// Unpaired sides: at an edge that n sides traverse in one direction and m < n in the other, the
+/// last n - m of the former.
 std::vector<Side> open_sides(const std::vector<Triangle>& triangles, std::size_t points) {
   std::vector<Side> open;
   visit_edges(triangles, points, [&](const EdgeUse& edge) {
@@ -29,7 +29,8 @@ std::vector<Side> open_sides(const std::vector<Triangle>& triangles, std::size_t
 std::vector<BoundaryLoop> boundary_loops(const std::vector<Triangle>& triangles,
                                          std::size_t points) {
   const std::vector<Side> open = open_sides(triangles, points);
-  // The open sides that begin at a point, as a chain of indices into `open`, first ones first.
+  // For each point, the open sides that begin there, as a linked list of indices into `open`, in
+  // order.
   constexpr std::uint32_t none = Weld::unused;
   std::vector<std::uint32_t> head(points, none), next(open.size(), none);
   for (std::size_t i = open.size(); i-- > 0;) {
@@ -44,13 +45,13 @@ std::vector<BoundaryLoop> boundary_loops(const std::vector<Triangle>& triangles,
   };
 
   std::vector<BoundaryLoop> loops;
-  std::vector<std::uint32_t> position(points, none);  // on the path walked now
+  std::vector<std::uint32_t> position(points, none);  // index on the current path
   for (const Side start : open) {
     std::vector<Side> path;
     std::uint32_t point = side_begin(triangles, start);
     while (true) {
       if (position[point] != none) {
-        // Back on the path: what lies between is a loop.
+        // The path has returned to one of its points: the part since then is a loop.
         const auto from = path.begin() + position[point];
         BoundaryLoop loop;
         loop.sides.assign(from, path.end());

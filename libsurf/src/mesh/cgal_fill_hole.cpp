@@ -16,7 +16,7 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 constexpr std::size_t max_corners_of_cubic_search = 300;
 
-/// Looks at the token between the steps of a search.
+/// Checks the cancel token between the steps of a search.
 struct Looks : CGAL::Polygon_mesh_processing::Hole_filling::Default_visitor {
   const Watch* watch;
   void start_quadratic_phase(std::size_t) const { watch->check(); }
@@ -48,7 +48,7 @@ std::vector<Triangle> span_polygon(const std::vector<Vec3>& corners, const Watch
   } catch (const Interrupted&) {
     throw;
   } catch (const std::exception&) {
-    return {};  // corners on a line, for example
+    return {};  // for example, corners on a line
   }
   std::vector<Triangle> triangles;
   for (const auto& t : found) {

@@ -8,10 +8,10 @@
 
 namespace surf {
 
-/// Triangles over the corners of a closed polygon, numbered as they come, that span it with little
-/// area and gentle folds (CGAL's triangulate_hole_polyline); empty where none is found. Every side
-/// i -> i + 1 of the polygon is a side of one of them, the same way round. Throws
-/// Interrupted.
+/// Triangulates a closed polygon with little area and gentle folds (CGAL's
+/// triangulate_hole_polyline). Corners are numbered in their order. Empty if CGAL finds no
+/// triangulation. Every side i -> i + 1 of the polygon is a side of one triangle, in the same
+/// direction. Throws Interrupted.
 std::vector<Triangle> span_polygon(const std::vector<Vec3>& corners, const Watch& watch);
 
 }  // namespace surf

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled with CGAL's checks on: where they fail they throw, and the attempt is given up.
+// Compiled with CGAL's checks on. If a check fails it throws, and the attempt is given up.
 #include "mesh/cgal_resolve.h"
 
-// Without this, CGAL first tries to smooth intersections away, which does not end on some meshes
-// (many_small_holes.ply of the test data with its large hole filled).
+// Without this macro CGAL first tries to smooth intersections away, which does not terminate on
+// some meshes (many_small_holes.ply of the test data with its large hole filled).
 #define CGAL_PMP_REMOVE_SELF_INTERSECTIONS_NO_SMOOTHING
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -29,7 +29,7 @@ namespace pmp = CGAL::Polygon_mesh_processing;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
-// CGAL tells of its steps: those that can last look at the token.
+// CGAL reports its steps; those that can take long check the cancel token.
 struct Corefining : pmp::Corefinement::Default_visitor<Mesh> {
   explicit Corefining(const Watch& w) : watch(&w) {}
   const Watch* watch;
@@ -46,7 +46,8 @@ struct Mending : pmp::experimental::Remove_self_intersection_default_visitor<Mes
   void start_component_handling() const { watch->check(); }
 };
 
-/// Points that several fans share become several vertices. False if it cannot be a manifold.
+/// Converts to CGAL's mesh. A point that several fans share becomes several vertices. Returns false
+/// if the mesh cannot be made manifold.
 bool to_cgal(const TriangleMesh& mesh, Mesh& out) {
   std::vector<Kernel::Point_3> points;
   for (const Vec3& v : mesh.vertices_nm) points.emplace_back(v.x, v.y, v.z);
@@ -58,8 +59,8 @@ bool to_cgal(const TriangleMesh& mesh, Mesh& out) {
   return true;
 }
 
-// CGAL's order depends on where things lie in memory: vertices are put in the order of their
-// coordinates, triangles in that of their corners, so that results are the same on every run.
+// The order of CGAL's results depends on memory addresses. Vertices are sorted by their coordinates
+// and triangles by their corners, so that results are the same on every run.
 void put_in_order(TriangleMesh& mesh) {
   const auto less = [&](std::uint32_t a, std::uint32_t b) {
     const Vec3 &p = mesh.vertices_nm[a], &q = mesh.vertices_nm[b];

@@ -8,13 +8,13 @@
 
 namespace surf {
 
-// Attempts by CGAL; the caller judges the result. Empty where CGAL gives up. Both throw
-// Interrupted.
+// Repairs by CGAL, whose results the caller must check. The result is empty if CGAL gives up. Both
+// functions throw Interrupted.
 
 /// The union of closed bodies with outward normals, each free of self-intersections.
 TriangleMesh unite(const std::vector<TriangleMesh>& bodies, const Watch& watch);
 
-/// The surroundings of self-intersections, cut out and filled anew.
+/// Cuts out the surroundings of self-intersections and fills them again.
 TriangleMesh mend_self_intersections(const TriangleMesh& mesh, const Watch& watch);
 
 }  // namespace surf

@@ -23,7 +23,8 @@ using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<
     CGAL::No_constraint_intersection_requiring_constructions_tag>;
 using Face = Triangulation::Face_handle;
 
-// From a face whose place is known to all that no constraint keeps apart.
+// Assigns `where` to all faces that can be reached without crossing a constraint. Returns false on
+// a contradiction.
 bool spread(std::vector<Face>& open, Where where) {
   while (!open.empty()) {
     const Face face = open.back();
@@ -39,9 +40,10 @@ bool spread(std::vector<Face>& open, Where where) {
   return true;
 }
 
-// A triangle is bad whose circumcircle's radius is more than this times its shortest side.
+// A triangle is bad if the radius of its circumcircle exceeds this times its shortest side.
 constexpr double largest_ratio = 2;
-constexpr double closest = 0.6;  // of that radius: as near as other points may be to a new one
+// Least distance of other points from a new point, in circumradii.
+constexpr double closest = 0.6;
 constexpr int most_passes = 40;
 
 struct NewPoint {
@@ -67,8 +69,8 @@ std::vector<NewPoint> middles_of_bad(const Triangulation& triangulation) {
   return out;
 }
 
-// Whether a new point may lie in this face: not where it would see an outline's edge under more
-// than a right angle, and not near other points.
+// Whether a new point may lie in this face. It must not see an edge of an outline under a right
+// angle or more, and must not be near other points.
 bool has_room(const Triangulation& triangulation, const Face& face, const NewPoint& p) {
   if (triangulation.is_infinite(face) || face->info() != Where::inside) return false;
   for (int i = 0; i < 3; ++i) {
@@ -128,9 +130,9 @@ std::vector<Triangle> triangulate_region(std::vector<std::array<double, 2>>& poi
   for (const PlanarEdge& e : edges) {
     Face face;
     int opposite = 0;
-    // An edge that was cut at a point on it is none of the region's.
+    // The region's edges must not be split by a point on them.
     if (!triangulation.is_edge(vertices[e.from], vertices[e.to], face, opposite)) return {};
-    // `face` lies to the left of the edge as it is found, which may be from either end.
+    // `face` lies to the left of the edge as CGAL returns it, which may be in either direction.
     const bool found_forward = face->vertex(Triangulation::ccw(opposite)) == vertices[e.from];
     const Face left = found_forward ? face : face->neighbor(opposite),
                right = found_forward ? face->neighbor(opposite) : face;

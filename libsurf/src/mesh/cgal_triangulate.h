@@ -13,12 +13,12 @@ struct PlanarEdge {
   std::uint32_t from, to;
 };
 
-/// Triangles that fill the region between closed lines in a plane, counter-clockwise: a constrained
-/// Delaunay triangulation. The region lies left of each edge; outlines may have holes and touch at
-/// points. Empty where edges cross or points coincide. With `graded`, points are added inside the
-/// region, and appended to `points`, so that triangles grow from where outlines have many points to
-/// where there are none: without it they are as long as the region is wide (refinement after Chew,
-/// doi:10.1145/160985.161150, that leaves the outlines alone).
+/// Triangulates the region between closed lines in a plane, counter-clockwise, by a constrained
+/// Delaunay triangulation. The region lies to the left of each edge; outlines may have holes and
+/// touch at points. Empty if edges cross or points coincide. With `graded`, points are added inside
+/// the region and appended to `points`, so that triangles grow with the distance from outlines that
+/// have many points; without it, triangles are as long as the region is wide (refinement after
+/// Chew, doi:10.1145/160985.161150, that leaves the outlines unchanged).
 std::vector<Triangle> triangulate_region(std::vector<std::array<double, 2>>& points,
                                          const std::vector<PlanarEdge>& edges, bool graded);
 

@@ -13,7 +13,7 @@
 namespace surf {
 namespace {
 
-/// Counts something and keeps the place of the first one.
+/// Counts an event and stores the place of the first one.
 void note(std::size_t& count, Vec3& first_nm, const Vec3& place_nm) {
   if (count++ == 0) first_nm = place_nm;
 }
@@ -40,7 +40,7 @@ void count_duplicates(const TriangleMesh& mesh, const Weld& weld,
   }
 }
 
-/// Fans of triangles around points: corners that neighbour through an edge at their point.
+/// Fans of triangles around points: sets of corners that are connected by edges at their point.
 class Fans {
  public:
   explicit Fans(std::size_t corners) : sets_(corners) {}
@@ -105,7 +105,8 @@ void count_edges(const TriangleMesh& mesh, const Weld& weld, const std::vector<T
 
 void measure(const TriangleMesh& mesh, const std::vector<Triangle>& triangles, MeshReport& report) {
   report.bounds_nm = bounds(mesh);
-  // Far from the origin the volume would drown in rounding: count from the middle.
+  // The volume is computed relative to the centre, because rounding would spoil it far from the
+  // origin.
   const Vec3 middle = report.bounds_nm.center_nm();
   constexpr double tolerance = 4 * std::numeric_limits<double>::epsilon();
   for (std::size_t i = 0; i < triangles.size(); ++i) {

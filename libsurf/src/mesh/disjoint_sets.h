@@ -9,7 +9,8 @@
 
 namespace surf {
 
-/// Sets of numbers 0 .. count - 1, each alone at first; the lowest number stands for its set.
+/// Disjoint sets of the numbers 0 .. count - 1; initially each number is a set of its own. The
+/// lowest number represents its set.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parent_(count) {

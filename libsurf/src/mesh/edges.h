@@ -13,14 +13,14 @@
 
 namespace surf {
 
-/// Numbers gathered per point and sorted there: a counting sort followed by many tiny sorts, much
-/// quicker than one large sort.
+/// Numbers grouped by point and sorted within each group: a counting sort followed by many tiny
+/// sorts, which is much faster than one large sort.
 struct Buckets {
-  std::vector<std::size_t> begin;  ///< of every point's values; one more at the end
+  std::vector<std::size_t> begin;  ///< start of every point's values, and the end of the last
   std::vector<std::uint64_t> values;
 };
 
-/// `for_each(put)` calls put(point, value) for everything there is, the same each time.
+/// `for_each(put)` calls put(point, value) for every value, and gives the same values on each call.
 template <class ForEach>
 Buckets gather(std::size_t points, const ForEach& for_each) {
   Buckets buckets;
@@ -29,7 +29,7 @@ Buckets gather(std::size_t points, const ForEach& for_each) {
   for_each([&](std::uint32_t point, std::uint64_t) { ++begin[point]; });
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   buckets.values.resize(begin.back());
-  // begin[p] is p's end here, and becomes its beginning while the bucket is filled.
+  // begin[p] is first the end of p's values; filling the group moves it to their start.
   for_each(
       [&](std::uint32_t point, std::uint64_t value) { buckets.values[--begin[point]] = value; });
   const auto first = buckets.values.begin();
@@ -40,7 +40,7 @@ Buckets gather(std::size_t points, const ForEach& for_each) {
   return buckets;
 }
 
-// A triangle with a repeated corner runs forth and back along one edge: it bounds nothing and has
+// A triangle with a repeated corner runs back and forth along one edge: it bounds nothing and has
 // no edges.
 inline bool has_repeated_corner(const Triangle& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
@@ -52,7 +52,7 @@ inline std::vector<Triangle> welded_triangles(const TriangleMesh& mesh, const We
   return triangles;
 }
 
-/// A side runs from corner k of a triangle to the next one; its number is 3 * triangle + k.
+/// Side 3 * triangle + k runs from corner k of a triangle to its next corner.
 using Side = std::uint32_t;
 inline Side next_side(Side s) { return s % 3 == 2 ? s - 2 : s + 1; }
 inline std::uint32_t side_begin(const std::vector<Triangle>& t, Side s) { return t[s / 3][s % 3]; }
@@ -60,7 +60,7 @@ inline std::uint32_t side_end(const std::vector<Triangle>& t, Side s) {
   return side_begin(t, next_side(s));
 }
 
-/// One undirected edge and the sides that run along it, each of which tells where it begins.
+/// An undirected edge and the sides that run along it.
 struct EdgeUse {
   std::uint32_t low;
   std::uint32_t high;
@@ -70,7 +70,7 @@ struct EdgeUse {
   Side side(std::size_t i) const { return static_cast<Side>(values[i]); }
 };
 
-/// Sides that run from the lower to the higher point.
+/// The number of sides that run from the lower to the higher point.
 inline std::size_t count_forward(const std::vector<Triangle>& triangles, const EdgeUse& edge) {
   std::size_t forward = 0;
   for (std::size_t i = 0; i < edge.uses(); ++i) {
@@ -80,7 +80,7 @@ inline std::size_t count_forward(const std::vector<Triangle>& triangles, const E
 }
 
 /// Calls visit(EdgeUse) for every edge, ordered by its points; sides come in rising order.
-/// Triangles hold points, see Weld; there are fewer than 2^32 sides (`validate` sees to it).
+/// Triangles hold points (see Weld). There are fewer than 2^32 sides; `validate` ensures that.
 template <class Visit>
 void visit_edges(const std::vector<Triangle>& triangles, std::size_t points, const Visit& visit) {
   const Buckets buckets = gather(points, [&](const auto& put) {

@@ -5,7 +5,7 @@
 
 namespace surf {
 
-/// A field of heights 0 of the extent's size, centred on (0, 0).
+/// A flat field of the given extent: all heights are 0, centred on (0, 0).
 HeightField flat_field(const FieldExtent& extent);
 
 }  // namespace surf

@@ -15,7 +15,7 @@ using Row = std::vector<Complex>;
 
 Complex turn(double part) { return std::polar(1.0, 2 * std::numbers::pi * part); }
 
-/// In place, forward, unscaled; the length is a power of two.
+/// Forward transform in place, unscaled; the length must be a power of two.
 void transform_power_of_two(Row& row) {
   const std::size_t n = row.size();
   for (std::size_t i = 1, j = 0; i < n; ++i) {
@@ -37,7 +37,8 @@ void transform_power_of_two(Row& row) {
   }
 }
 
-/// Forward transforms of one length, by Bluestein's convolution (1970) where it is no power of two.
+/// Forward transforms of one length, by Bluestein's convolution (1970) if the length is not a power
+/// of two.
 class Fourier {
  public:
   explicit Fourier(std::size_t n) : n_(n) {
@@ -68,7 +69,7 @@ class Fourier {
   Row chirp_, kernel_;
 };
 
-/// Transforms rows and returns the transpose: done twice, it transforms both axes.
+/// Transforms the rows and returns the transpose. Applied twice, it transforms both axes.
 Grid<Complex> transformed_transpose(const Grid<Complex>& in) {
   Grid<Complex> out(in.height(), in.width());
   const Fourier fourier(static_cast<std::size_t>(in.width()));
@@ -93,7 +94,8 @@ Grid<double> filtered(const Grid<double>& grid, const std::function<double(doubl
   work = transformed_transpose(transformed_transpose(work));
   for (int y = 0; y < work.height(); ++y) {
     for (int x = 0; x < work.width(); ++x) {
-      // Backwards is forwards of the conjugate, conjugated: the end result is real.
+      // The backward transform is the conjugate of the forward transform of the conjugate. The
+      // final result is real.
       work(x, y) =
           std::conj(work(x, y)) * gain(frequency(x, work.width()), frequency(y, work.height()));
     }

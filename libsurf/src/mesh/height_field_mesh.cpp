@@ -47,7 +47,7 @@ int continued_index(int index, int count, Edge edge) {
   throw UsageError("edge", "is none of mirror, flat and periodic", "Give one of them");
 }
 
-/// The sample that stands for each of `margin + count + margin` ones.
+/// The index of the sample for each of `margin + count + margin` samples.
 std::vector<int> continued_indices(int count, int margin, Edge edge) {
   std::vector<int> indices(static_cast<std::size_t>(count + 2 * margin));
   for (int i = 0; i < count + 2 * margin; ++i) {
@@ -56,7 +56,8 @@ std::vector<int> continued_indices(int count, int margin, Edge edge) {
   return indices;
 }
 
-/// Whole pitches that cover the margin; a rounding error above a whole number adds none.
+/// The number of whole pitches that cover the margin. A rounding error above a whole number adds
+/// none.
 double margin_pitches(double margin_nm, double pitch_nm) {
   return std::ceil(margin_nm / pitch_nm * (1 - 1e-12));
 }
@@ -138,7 +139,7 @@ HeightField extend_height_field(const HeightField& field, double margin_x_nm, do
 TriangleMesh half_space_top(const HeightField& field, double apron_nm) {
   require_positive(apron_nm, "apron");
   require_no_holes(field);
-  // One more ring of samples at the outermost heights, moved out from one pitch to the apron.
+  // Adds a ring of samples with the outermost heights and moves it from one pitch out to the apron.
   HeightField ringed = extend_height_field(field, field.pitch_x_nm, field.pitch_y_nm, Edge::flat);
   TriangleMesh mesh = height_field_sheet(ringed);
   const int width = ringed.z_nm.width();

@@ -15,7 +15,7 @@ std::vector<double> height_profile(const TriangleMesh& mesh, Point2 from_nm, Poi
   if (!(length > 0) || !std::isfinite(length))
     throw UsageError("line", "its ends are one point", "Choose two points that differ in x or y");
   if (samples < 2) throw UsageError("samples", "a profile has two or more", "Ask for 500, say");
-  // With the line turned onto the x axis it is the lowest row of a height field.
+  // Rotates the line onto the x axis, where it is the lowest row of a height field.
   const double c = (to_nm.x - from_nm.x) / length, s = (to_nm.y - from_nm.y) / length;
   TriangleMesh turned = mesh;
   for (Vec3& v : turned.vertices_nm) {

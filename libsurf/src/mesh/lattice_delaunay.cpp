@@ -8,7 +8,7 @@
 namespace surf {
 namespace {
 
-__extension__ using Wide = __int128;  // a determinant of fourth order takes more than 64 bits
+__extension__ using Wide = __int128;  // a fourth-order determinant needs more than 64 bits
 
 /// Whether `p` lies strictly inside the circle through a, b, c, which run counter-clockwise.
 bool in_circle(LatticePoint a, LatticePoint b, LatticePoint c, LatticePoint p) {
@@ -39,7 +39,7 @@ std::uint32_t LatticeDelaunay::add() {
   return static_cast<std::uint32_t>(triangles_.size() - 1);
 }
 
-// Corners, and what is beyond the sides that begin at them.
+// Sets the corners of a triangle, and the sides opposite to the sides that begin at them.
 void LatticeDelaunay::set(std::uint32_t triangle, Triangle corners, std::uint32_t first,
                           std::uint32_t second, std::uint32_t third) {
   triangles_[triangle] = corners;
@@ -58,7 +58,8 @@ std::uint32_t LatticeDelaunay::find(LatticePoint p, std::uint32_t start) const {
       ++k;
       continue;
     }
-    t = opposite_[3 * t + k] / 3;  // a convex whole: beyond the rim there is no point to look for
+    // The region is convex, so `p` is never beyond the rim.
+    t = opposite_[3 * t + k] / 3;
     k = 0;
   }
   return t;
@@ -72,8 +73,8 @@ bool LatticeDelaunay::breaks_delaunay(std::uint32_t side) const {
                    points_[triangles_[other / 3][previous_side(other) % 3]]);
 }
 
-// Before: the side runs from r to l, its triangle's third corner is a, the other one's b. After:
-// the side's triangle is (a, b, l), the other one (b, a, r).
+// Before the flip, the side runs from r to l; the third corner of its triangle is a, that of the
+// other triangle is b. After it, the side's triangle is (a, b, l) and the other (b, a, r).
 void LatticeDelaunay::flip(std::uint32_t side) {
   const std::uint32_t other = opposite_[side];
   const std::uint32_t s = side / 3, o = other / 3;
@@ -86,8 +87,8 @@ void LatticeDelaunay::flip(std::uint32_t side) {
   set(o, {b, a, r}, 3 * s, ar, rb);
 }
 
-// Every suspect is the side opposite to the new point in its triangle, so that flips leave the
-// other suspects where they are.
+// Every suspect is the side opposite to the new point in its triangle, so flips do not move other
+// suspects.
 void LatticeDelaunay::restore(std::vector<std::uint32_t>& suspects,
                               std::vector<std::uint32_t>& changed) {
   while (!suspects.empty()) {
@@ -98,7 +99,7 @@ void LatticeDelaunay::restore(std::vector<std::uint32_t>& suspects,
     flip(side);
     changed.push_back(s);
     changed.push_back(o);
-    suspects.push_back(3 * s + 1);  // b to l, and r to b, seen from a
+    suspects.push_back(3 * s + 1);  // b to l and r to b, opposite to a
     suspects.push_back(3 * o + 2);
   }
 }
@@ -122,7 +123,8 @@ void LatticeDelaunay::insert(LatticePoint p, std::uint32_t triangle,
     set(v, {c, a, n}, ca, 3 * triangle + 2, 3 * u + 1);
     suspects = {3 * triangle, 3 * u, 3 * v};
   } else {
-    // The side from r to l, its triangle's third corner a: it falls into (a, r, n) and (l, a, n).
+    // The side runs from r to l, and the third corner of its triangle is a. The triangle is split
+    // into (a, r, n) and (l, a, n).
     const std::uint32_t other = opposite_[on];
     const std::uint32_t r = triangles_[triangle][on % 3],
                         l = triangles_[triangle][next_side(on) % 3],

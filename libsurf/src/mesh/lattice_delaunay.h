@@ -15,21 +15,21 @@ struct LatticePoint {
   friend bool operator==(const LatticePoint&, const LatticePoint&) = default;
 };
 
-/// Twice the signed area; > 0 where a, b, c run counter-clockwise. Exact.
+/// Twice the signed area; > 0 if a, b, c run counter-clockwise. Exact.
 inline std::int64_t doubled_area(LatticePoint a, LatticePoint b, LatticePoint c) {
   return (std::int64_t{b.x} - a.x) * (std::int64_t{c.y} - a.y) -
          (std::int64_t{b.y} - a.y) * (std::int64_t{c.x} - a.x);
 }
 
-/// A Delaunay triangulation of whole-number points that fills a rectangle, grown point by point;
-/// all predicates are exact. Coordinates are below 2^30. Side 3 t + k runs from corner k of
-/// triangle t to the next one. Which of two diagonals four points on a circle have depends on their
-/// order.
+/// An incremental Delaunay triangulation of integer points that fills a rectangle. All predicates
+/// are exact; coordinates are below 2^30. Side 3 t + k runs from corner k of triangle t to the next
+/// corner. If four points lie on a circle, the order of insertion decides which diagonal they have.
 class LatticeDelaunay {
  public:
   static constexpr std::uint32_t none = 0xffffffffu;
 
-  /// The rectangle from (0, 0) to (columns - 1, rows - 1) in two triangles; at least 2 x 2.
+  /// Starts with the rectangle from (0, 0) to (columns - 1, rows - 1) in two triangles; at least
+  /// 2 x 2.
   LatticeDelaunay(std::int32_t columns, std::int32_t rows);
 
   const std::vector<LatticePoint>& points() const { return points_; }
@@ -37,17 +37,18 @@ class LatticeDelaunay {
   LatticePoint corner(std::uint32_t triangle, std::size_t k) const {
     return points_[triangles_[triangle][k]];
   }
-  /// The other triangle's side; `none` at the rim.
+  /// The opposite side, in the neighbouring triangle; `none` at the rim.
   std::uint32_t opposite(std::uint32_t side) const { return opposite_[side]; }
 
-  /// A triangle that holds `p`, walking from `start`.
+  /// A triangle that contains `p`, found by a walk from `start`.
   std::uint32_t find(LatticePoint p, std::uint32_t start) const;
 
-  /// Adds a point that a triangle holds, inside or on a side, and that is none of its corners.
-  /// `changed` receives every triangle that is new or has other corners than before, some twice.
+  /// Inserts a point that lies in a triangle, inside or on a side, and is none of its corners.
+  /// Appends to `changed` every triangle that is new or has other corners than before, some of them
+  /// twice.
   void insert(LatticePoint p, std::uint32_t triangle, std::vector<std::uint32_t>& changed);
 
-  /// Gives unit cells with all four corners the diagonal from lower-left to upper-right.
+  /// Sets the diagonal of unit cells whose four corners are points: from lower-left to upper-right.
   void prefer_rising_diagonals();
 
  private:

@@ -13,15 +13,15 @@ namespace {
 
 /// Sums over the triangles around each point.
 struct Sums {
-  std::vector<double> angle;  ///< of their corners there
-  std::vector<double> area;   ///< what it has of theirs
-  std::vector<Vec3> pull;     ///< of the area's gradient: sum of cotangents times edges, halved
+  std::vector<double> angle;  ///< sum of the angles at the point
+  std::vector<double> area;   ///< the point's share of the areas
+  std::vector<Vec3> pull;     ///< gradient of the area: half the sum of cotangents times edges
   std::vector<Vec3> normal;
-  std::vector<unsigned char> inner;  ///< every edge there has two triangles
+  std::vector<unsigned char> inner;  ///< 1: every edge at the point has two triangles
 };
 
-/// What corner k has of a triangle: the part nearest to it, or a fixed share where that part
-/// reaches out of the triangle (Meyer et al., section 3.3).
+/// The area that corner k gets from a triangle: the part nearest to the corner, or a fixed share if
+/// that part extends beyond the triangle (Meyer et al., section 3.3).
 double mixed_area(const Vec3* v, std::size_t k, double area) {
   const auto along = [v](std::size_t at) {
     return dot(v[(at + 1) % 3] - v[at], v[(at + 2) % 3] - v[at]);
@@ -61,7 +61,7 @@ Sums sum_up(const TriangleMesh& mesh, const Weld& weld, const std::vector<Triang
   return s;
 }
 
-/// Of a point; the mean curvature's vector points inward on a ball, along the pull.
+/// The curvature at a point. The mean curvature vector points along `pull`, inward on a ball.
 Curvature curvature(const Sums& s, std::size_t p) {
   Curvature c;
   c.area_nm2 = s.area[p];

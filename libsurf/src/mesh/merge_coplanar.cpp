@@ -16,13 +16,14 @@ namespace surf {
 namespace {
 
 constexpr std::uint32_t none = 0xffffffffu;
-constexpr std::size_t watched_size = 4096;  // triangles between looks at the watch
-constexpr double needle = 1e-6;  // width over length of triangles whose plane is not trusted
-constexpr std::size_t worth_grading = 64;  // triangles of a region
-constexpr double area_rounding = 1e-9;     // relative, of a region before and after
+constexpr std::size_t watched_size = 4096;  // triangles between checks of the watch
+// Triangles with a smaller ratio of width to length do not define a plane.
+constexpr double needle = 1e-6;
+constexpr std::size_t worth_grading = 64;  // least number of triangles of a region
+// Relative rounding of a region's area before and after.
+constexpr double area_rounding = 1e-9;
 
-// Regions of triangles in one plane: they are found, their outlines are straightened, and they are
-// filled anew.
+// Finds regions of coplanar triangles, straightens their outlines and triangulates them again.
 class CoplanarRegions {
  public:
   CoplanarRegions(TriangleMesh& mesh, const MergeCoplanarOptions& options)
@@ -31,7 +32,8 @@ class CoplanarRegions {
   void merge() {
     find_neighbours();
     find_regions();
-    if (first_of_.size() == mesh_.triangles.size()) return;  // each by itself
+    if (first_of_.size() == mesh_.triangles.size())
+      return;  // every triangle is a region of its own
     do drop_corners();
     while (!fill_all());
     replace();
@@ -47,7 +49,8 @@ class CoplanarRegions {
     if (i % watched_size == 0) watch_.check();
   }
 
-  // The triangle across each side, where there is just one and it runs the other way.
+  // The triangle across each side, if there is exactly one and it traverses the edge in the other
+  // direction.
   void find_neighbours() {
     const std::size_t n = mesh_.triangles.size();
     neighbours_.assign(3 * n, none);
@@ -121,7 +124,7 @@ class CoplanarRegions {
 
   bool is_merged(std::uint32_t region) const { return size_of_[region] > 1; }
 
-  // Calls visit(triangle, k) for the sides where a region ends.
+  // Calls visit(triangle, k) for the sides at the outlines of regions.
   template <class Visit>
   void for_outline(const Visit& visit) const {
     for (std::size_t i = 0; i < mesh_.triangles.size(); ++i)
@@ -131,12 +134,12 @@ class CoplanarRegions {
       }
   }
 
-  // A corner that two outlines alone pass, in opposite directions and straight on, is dropped from
-  // both.
+  // A corner is dropped from both outlines if exactly two outlines pass it, in opposite directions
+  // and straight.
   void drop_corners() {
     struct Passing {
-      std::uint32_t next = none, before = none;  // of the first outline that comes
-      std::uint8_t begin = 0, end = 0;           // sides of outlines that do
+      std::uint32_t next = none, before = none;  // neighbours on the first outline
+      std::uint8_t begin = 0, end = 0;           // outline sides that begin or end here
       bool fixed = false;
     };
     std::vector<Passing> passing(mesh_.vertices_nm.size());
@@ -156,7 +159,8 @@ class CoplanarRegions {
       return lies_on(v, p.before, p.next);
     };
     for (std::uint32_t v = 0; v < passing.size(); ++v) dropped_[v] = is_straight(v) ? 1 : 0;
-    // Along each straight run the corners that are in fact off its ends' line are kept.
+    // On each straight run, keeps the corners that are off the line between its ends by more than
+    // the tolerance.
     std::vector<std::uint8_t> seen(passing.size(), 0);
     std::vector<std::uint32_t> run;
     for (std::uint32_t v = 0; v < passing.size(); ++v) {
@@ -164,7 +168,8 @@ class CoplanarRegions {
       if (!dropped_[v] || seen[v]) continue;
       run.assign(1, v);
       const auto walk = [&](std::uint32_t from,
-                            std::uint32_t to) {  // to the end of the run, which is kept
+                            // Walks to the end of the run, which is kept.
+                            std::uint32_t to) {
         run.push_back(to);
         while (dropped_[to] && to != v) {
           const Passing& p = passing[to];
@@ -174,7 +179,7 @@ class CoplanarRegions {
         }
       };
       walk(v, passing[v].next);
-      if (run.back() == v) {  // all around: rounding at its worst
+      if (run.back() == v) {  // a closed run, by accumulated rounding
         for (const std::uint32_t u : run) dropped_[u] = 0;
         continue;
       }
@@ -192,7 +197,7 @@ class CoplanarRegions {
            length(to - along * (share / squared)) <= tolerance_;
   }
 
-  // Ramer, Douglas and Peucker.
+  // The algorithm of Ramer, Douglas and Peucker.
   void keep_off_line(const std::vector<std::uint32_t>& run) {
     std::vector<std::pair<std::size_t, std::size_t>> open{{0, run.size() - 1}};
     while (!open.empty()) {
@@ -217,8 +222,8 @@ class CoplanarRegions {
     }
   }
 
-  // False where a region could not be filled: it stays as it was, with all its corners, and all
-  // have to be done anew.
+  // Returns false if a region could not be filled. That region keeps its triangles and corners, and
+  // all regions must be filled again.
   bool fill_all() {
     const std::size_t regions = first_of_.size();
     const Buckets outlines = gather(regions, [&](const auto& put) {
@@ -257,8 +262,8 @@ class CoplanarRegions {
   }
 
   void fill(std::uint32_t region, std::span<const std::uint64_t> outline) {
-    // Seen along the axis that the normal is nearest to: what is straight along another axis stays
-    // so.
+    // Projects along the axis nearest to the normal, so that lines parallel to another axis stay
+    // straight.
     const Vec3 n = normal_of_[region];
     const double x = std::fabs(n.x), y = std::fabs(n.y), z = std::fabs(n.z);
     double Vec3::*u = &Vec3::x;
@@ -279,7 +284,7 @@ class CoplanarRegions {
       }
       return place->second;
     };
-    // From each kept corner past those that are dropped.
+    // Connects each kept corner to the next kept one.
     std::unordered_map<std::uint32_t, std::uint32_t> after_dropped;
     for (const std::uint64_t s : outline)
       if (dropped_[corner(s / 3, s % 3)])
@@ -328,8 +333,8 @@ class CoplanarRegions {
   }
 
   void drop_unused() {
-    std::vector<std::uint32_t> number(mesh_.vertices_nm.size(),
-                                      none);  // those of regions that were filled twice, too
+    // Also drops vertices of regions that were filled twice.
+    std::vector<std::uint32_t> number(mesh_.vertices_nm.size(), none);
     for (const Triangle& t : mesh_.triangles)
       for (const std::uint32_t v : t) number[v] = 0;
     std::uint32_t count = 0;
@@ -350,7 +355,7 @@ class CoplanarRegions {
   std::vector<std::uint32_t> neighbours_;  // per side
   std::vector<std::uint32_t> region_;      // per triangle
   std::vector<std::uint32_t> first_of_;    // per region: its first triangle
-  std::vector<std::uint32_t> size_of_;     // triangles; 1 where they are left as they are
+  std::vector<std::uint32_t> size_of_;     // triangles; 1: left as it is
   std::vector<Vec3> normal_of_;
   std::vector<std::uint8_t> dropped_;          // per vertex
   std::vector<std::vector<Triangle>> filled_;  // per region

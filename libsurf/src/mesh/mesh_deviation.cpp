@@ -12,9 +12,10 @@ namespace surf {
 namespace {
 
 constexpr std::size_t block_size = 1024;
-constexpr double default_spacing = 1.5;  // mean edges: the longest side of a typical triangle
-constexpr double max_pieces =
-    4096;  // along a side: a sample less dense than asked is better than none
+// In mean edges: about the longest side of a typical triangle.
+constexpr double default_spacing = 1.5;
+// Largest number of pieces of a side; longer sides are sampled less densely than wanted.
+constexpr double max_pieces = 4096;
 
 double mean_edge(const TriangleMesh& mesh) {
   double sum = 0;
@@ -29,7 +30,7 @@ int pieces(double length_nm, double spacing_nm) {
   return static_cast<int>(std::clamp(std::ceil(length_nm / spacing_nm), 1.0, max_pieces));
 }
 
-/// Points between the corners, in rows along the longest side.
+/// Visits the sample points between the corners, in rows along the longest side.
 template <class Visit>
 void visit_samples(const TriangleMesh& mesh, const Triangle& t, double spacing_nm,
                    const Visit& visit) {
@@ -46,14 +47,14 @@ void visit_samples(const TriangleMesh& mesh, const Triangle& t, double spacing_n
   for (int row = 0; row < rows; ++row) {
     const double share = double(row) / rows;
     const int columns = pieces(longest * (1 - share), spacing_nm);
-    const bool corners = row == 0;  // at both ends, and visited already
+    const bool corners = row == 0;  // the ends are corners, already visited
     for (int column = corners; column <= columns - corners; ++column) {
       visit(v[0] + up * share + along * ((1 - share) * column / columns));
     }
   }
 }
 
-/// Largest distance of samples on `from` from the surface in the tree.
+/// The largest distance of samples on `from` from the surface in the tree.
 double largest_distance(const TriangleMesh& from, const TriangleTree& tree, double spacing_nm,
                         int threads, const Watch& watch) {
   const std::size_t corners = from.vertices_nm.size();

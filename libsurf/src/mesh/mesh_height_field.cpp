@@ -44,7 +44,7 @@ HeightField empty_field(const TriangleMesh& mesh, const MeshHeightFieldOptions& 
   return field;
 }
 
-/// Samples between two coordinates, at most all of them.
+/// The range of samples between two coordinates, limited to the field.
 struct Range {
   int first, last;
 };
@@ -56,14 +56,14 @@ Range samples(double low, double high, double origin, double pitch, int count) {
           static_cast<int>(std::clamp(last, -1.0, double(count - 1)))};
 }
 
-/// Raises the samples of rows [first_row, last_row] below a triangle to its height.
+/// Raises the samples below a triangle, in rows [first_row, last_row], to its height.
 void raise(HeightField& field, const Vec3& a, const Vec3& b, const Vec3& c, int first_row,
            int last_row) {
   const double twice_area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
   const double longest =
       std::max({std::hypot(b.x - a.x, b.y - a.y), std::hypot(c.x - a.x, c.y - a.y),
                 std::hypot(c.x - b.x, c.y - b.y)});
-  if (std::abs(twice_area) <= 1e-12 * longest * longest) return;  // seen on edge
+  if (std::abs(twice_area) <= 1e-12 * longest * longest) return;  // vertical triangle
   const auto [low_x, high_x] = std::minmax({a.x, b.x, c.x});
   const auto [low_y, high_y] = std::minmax({a.y, b.y, c.y});
   const auto [low_z, high_z] = std::minmax({a.z, b.z, c.z});

@@ -19,7 +19,7 @@ std::string place(const Vec3& p) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g}) nm", p.x, p.y, p.z);
 }
 
-/// What of the check's findings makes it no sheet, or nothing.
+/// The reason why the mesh is no sheet, or an empty text.
 std::string fault(const MeshReport& r) {
   if (r.boundary_edges == 0) return "it has no rim, it is closed";
   if (r.nonmanifold_edges > 0) {
@@ -40,11 +40,11 @@ double reach(const Box& box, const RimCentroid& c) {
                     std::max(c.y - box.lower_nm.y, box.upper_nm.y - c.y));
 }
 
-constexpr double beyond_rim =
-    0.01;  // of the rim's size: more is not a sheet but a body with a hole
+// Share of the rim's size; a mesh that extends farther is a body with a hole.
+constexpr double beyond_rim = 0.01;
 
-/// A vertex of the sheet that seen from above lies well outside the rim, or nothing. The rim runs
-/// counter-clockwise about the centroid, `angle` being between neighbours.
+/// A vertex of the sheet that lies well outside the rim, seen from above, or nothing. The rim runs
+/// counter-clockwise about the centroid; `angle` holds the angles between neighbours.
 std::optional<Vec3> beyond(const TriangleMesh& mesh, std::uint32_t of_triangle,
                            const std::vector<Vec3>& rim, const RimCentroid& c,
                            const std::vector<double>& angle) {
@@ -52,7 +52,7 @@ std::optional<Vec3> beyond(const TriangleMesh& mesh, std::uint32_t of_triangle,
   for (const Vec3& v : rim) box.extend(v);
   const Vec3 size = box.size_nm();
   const double slack = beyond_rim * std::max(size.x, size.y);
-  std::vector<double> turned{0};  // from the first rim vertex to each
+  std::vector<double> turned{0};  // angle from the first rim vertex
   for (const double a : angle) turned.push_back(turned.back() + a);
   const Vec3 start = rim[0] - Vec3{c.x, c.y, 0};
 
@@ -121,8 +121,8 @@ std::optional<TriangleMesh> extend_open_sheet(const TriangleMesh& mesh, double a
     return refuse("it reaches sideways beyond its rim, to " + place(*v));
   }
 
-  // A chord between two directions stays outside the circle of radius `far` if both its ends are
-  // at far / cos(half the angle between them) or more.
+  // A chord between two directions stays outside the circle of radius `far` if its ends are at a
+  // distance of at least far / cos(half the angle between them).
   const double far = reach(bounds(result), c) + apron_nm;
   const auto count = static_cast<std::uint32_t>(rim.size());
   const auto first = static_cast<std::uint32_t>(result.vertices_nm.size());

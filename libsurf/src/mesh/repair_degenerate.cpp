@@ -7,15 +7,15 @@
 namespace surf {
 namespace {
 
-constexpr int max_passes = 16;  // a pass may bare the next sliver of a chain
+constexpr int max_passes = 16;  // a pass may expose the next sliver of a chain
 constexpr double relative_area = 4 * std::numeric_limits<double>::epsilon();  // as check_mesh
 
-/// The triangle's shape: which corner faces the longest side, and how high it stands above it.
+/// The shape of a triangle: the corner opposite to its longest side, and its height over that side.
 struct Shape {
   std::size_t apex;
   double height_nm;
   double shortest_nm;
-  bool flat;  ///< no area, to rounding
+  bool flat;  ///< no area within rounding
 };
 
 Shape shape(const TriangleMesh& mesh, const Triangle& t) {
@@ -28,7 +28,7 @@ Shape shape(const TriangleMesh& mesh, const Triangle& t) {
           twice_area <= relative_area * side[1] * side[2]};
 }
 
-/// The mesh with the triangles of every vertex, kept true while triangles change.
+/// A mesh with the triangles of every vertex, which stay up to date while triangles change.
 class Editor {
  public:
   Editor(TriangleMesh& mesh, double sliver_nm)
@@ -46,7 +46,7 @@ class Editor {
     return s.flat || s.height_nm < sliver_nm_;
   }
 
-  /// Tries to get rid of a bad triangle.
+  /// Tries to remove a bad triangle.
   bool remove(std::uint32_t t) {
     if (has_repeated_corner(mesh_.triangles[t])) return drop(t);
     const Shape s = shape(mesh_, mesh_.triangles[t]);
@@ -90,8 +90,8 @@ class Editor {
     for (const std::uint32_t v : corners) around_[v].push_back(t);
   }
 
-  /// The bad triangle (apex, from, to) and its neighbour beyond the longest side become the two
-  /// triangles on the other diagonal.
+  /// Replaces the bad triangle (apex, from, to) and its neighbour across the longest side by the
+  /// two triangles with the other diagonal.
   bool flip(std::uint32_t t, std::uint32_t neighbour, std::uint32_t apex, std::uint32_t from,
             std::uint32_t to) {
     const Triangle n = mesh_.triangles[neighbour];
@@ -101,7 +101,7 @@ class Editor {
       if (v != from && v != to) far = v;
     }
     if (far == apex || !at_edge(apex, far).empty()) return false;
-    // Corners of the neighbour with one end of the shared side replaced keep its orientation.
+    // Replacing one end of the shared side keeps the orientation of the neighbour.
     const auto with = [&](std::uint32_t old) {
       Triangle corners = n;
       std::ranges::replace(corners, old, apex);
@@ -141,7 +141,8 @@ class Editor {
     }
     const std::uint32_t keep = std::min(c[k], c[(k + 1) % 3]);
     const std::uint32_t gone = std::max(c[k], c[(k + 1) % 3]);
-    // The link condition: the two ends have no common neighbours but those of their own triangles.
+    // The link condition: the ends may have no common neighbours other than the third corners of
+    // their shared triangles.
     const std::vector<std::uint32_t> a = neighbours(keep), b = neighbours(gone);
     std::vector<std::uint32_t> common;
     std::ranges::set_intersection(a, b, std::back_inserter(common));

@@ -19,7 +19,7 @@ double perimeter(const TriangleMesh& mesh, const BoundaryLoop& loop) {
   return sum;
 }
 
-/// Lengths of the diagonals of all components, by triangle.
+/// The diagonal of each triangle's component.
 std::vector<double> diagonals(const TriangleMesh& mesh) {
   const std::vector<std::uint32_t> component = triangle_components(mesh);
   std::vector<Box> boxes;
@@ -36,7 +36,7 @@ std::uint64_t key(std::uint32_t a, std::uint32_t b) {
   return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
 }
 
-/// What is there between rim points already, so that no fill lays a second edge or face over it.
+/// The existing edges between rim points, so that no fill duplicates an edge or face.
 class Occupied {
  public:
   Occupied(const TriangleMesh& mesh, const std::vector<BoundaryLoop>& loops) {
@@ -51,7 +51,7 @@ class Occupied {
     }
   }
 
-  /// Whether a patch over the loop's points has an inner edge that is there already.
+  /// Whether a patch over the loop's points has an inner edge that already exists.
   bool meets(const std::vector<Triangle>& patch, const BoundaryLoop& loop) const {
     std::unordered_set<std::uint64_t> own;
     for (std::size_t i = 0; i < loop.points.size(); ++i) {
@@ -76,14 +76,14 @@ class Occupied {
   std::unordered_set<std::uint64_t> edges_;
 };
 
-/// A triangle over the three corners of the loop's first triangle would only lie on it.
+/// Whether the loop is the rim of a single triangle. A fill would only lie on that triangle.
 bool is_lone_triangle(const TriangleMesh& mesh, const BoundaryLoop& loop) {
   if (loop.points.size() != 3) return false;
   return loop.sides[0] / 3 == loop.sides[1] / 3 && loop.sides[1] / 3 == loop.sides[2] / 3 &&
          !mesh.triangles.empty();
 }
 
-/// Triangles that answer the loop's sides; vertices they need are added to the mesh.
+/// The triangles that close a loop. Vertices that they need are added to the mesh.
 std::vector<Triangle> patch_for(TriangleMesh& mesh, const BoundaryLoop& loop,
                                 const Occupied& occupied, const Watch& watch) {
   if (is_lone_triangle(mesh, loop)) return {};
@@ -93,7 +93,7 @@ std::vector<Triangle> patch_for(TriangleMesh& mesh, const BoundaryLoop& loop,
   std::vector<Triangle> patch = span_polygon(corners, watch);
   for (Triangle& t : patch) t = {rim[t[0]], rim[t[1]], rim[t[2]]};
   if (!patch.empty() && !occupied.meets(patch, loop)) return patch;
-  // A star about the middle has no edges that could be there already.
+  // A star about the centre has only new edges.
   Vec3 middle;
   for (const Vec3& c : corners) middle += c * (1.0 / static_cast<double>(corners.size()));
   const auto center = static_cast<std::uint32_t>(mesh.vertices_nm.size());

@@ -7,12 +7,12 @@
 
 namespace surf {
 
-/// Fills holes of a merged mesh (every vertex is its own point); returns how many, and adds up the
-/// triangles that took. Throws Interrupted.
+/// Fills the holes of a merged mesh (every vertex is its own point) and returns their number. Adds
+/// the number of new triangles to `fill_triangles`. Throws Interrupted.
 std::size_t fill_holes(TriangleMesh& mesh, std::optional<double> max_hole_nm,
                        std::size_t& fill_triangles, const Watch& watch);
 
-/// The holes that a merged mesh has.
+/// The holes of a merged mesh.
 std::vector<OpenHole> open_holes(const TriangleMesh& mesh, std::optional<double> max_hole_nm);
 
 }  // namespace surf

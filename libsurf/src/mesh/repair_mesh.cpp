@@ -17,10 +17,10 @@
 namespace surf {
 namespace {
 
-constexpr double default_stitch = 1e-6;          // of the diagonal
-constexpr std::size_t max_mended_pairs = 20000;  // beyond these CGAL would take minutes
-constexpr double size_kept =
-    0.5;  // a mended body keeps this share of its volume, a sheet of its area
+constexpr double default_stitch = 1e-6;          // share of the diagonal
+constexpr std::size_t max_mended_pairs = 20000;  // with more, CGAL would take minutes
+// A repaired body keeps at least this share of its volume, a sheet of its area.
+constexpr double size_kept = 0.5;
 
 void check_options(const RepairOptions& o) {
   if (o.stitch_nm) require_not_negative(*o.stitch_nm, "stitch distance");
@@ -38,7 +38,7 @@ bool no_worse(const MeshReport& now, const MeshReport& before) {
          (now.closed_and_oriented || !before.closed_and_oriented);
 }
 
-/// The mesh while it is mended, and what `check_mesh` says of it.
+/// The mesh during the repair, and the current report of `check_mesh`.
 class Work {
  public:
   Work(TriangleMesh mesh, const Watch& watch)
@@ -47,7 +47,7 @@ class Work {
   const TriangleMesh& mesh() const { return mesh_; }
   const MeshReport& report() const { return report_; }
 
-  /// Does a step and keeps its result unless that is worse; returns what the step counted.
+  /// Runs a step and keeps its result unless it is worse. Returns the number of repairs.
   std::size_t step(const std::function<std::size_t(TriangleMesh&)>& work) {
     watch_->check();
     TriangleMesh next = mesh_;
@@ -62,7 +62,7 @@ class Work {
   }
 
  private:
-  const Watch* watch_;  // is told nothing
+  const Watch* watch_;  // for cancellation only
   TriangleMesh mesh_;
   MeshReport report_;
 };
@@ -77,7 +77,7 @@ bool fits_in(const Box& inner, const Box& outer) {
          inner.upper_nm.z <= outer.upper_nm.z + slack;
 }
 
-/// The bodies that pass through each other become one; the rest of the mesh stays as it is.
+/// Unites the bodies that intersect each other; the rest of the mesh stays as it is.
 TriangleMesh united(const TriangleMesh& mesh, const SelfIntersections& crossings,
                     const Watch& watch) {
   const std::vector<std::uint32_t> component = triangle_components(mesh);
@@ -113,7 +113,7 @@ TriangleMesh united(const TriangleMesh& mesh, const SelfIntersections& crossings
   return merge_equal_vertices(rest);
 }
 
-/// Takes a mended mesh over where it is better and still the same body.
+/// Accepts a repaired mesh if it is better and still the same body.
 bool adopt(TriangleMesh& mesh, SelfIntersections& found, TriangleMesh mended, int threads,
            const Watch& watch) {
   if (mended.triangles.empty()) return false;

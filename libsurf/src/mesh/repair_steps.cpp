@@ -18,13 +18,13 @@ double area(const TriangleMesh& mesh, const Triangle& t) {
                             mesh.vertices_nm[t[2]] - mesh.vertices_nm[t[0]]));
 }
 
-/// Six times the volume below a triangle, from `origin`.
+/// Six times the volume of the tetrahedron from `origin` to a triangle.
 double volume(const TriangleMesh& mesh, const Triangle& t, const Vec3& origin) {
   return dot(mesh.vertices_nm[t[0]] - origin,
              cross(mesh.vertices_nm[t[1]] - origin, mesh.vertices_nm[t[2]] - origin));
 }
 
-/// Points in cubes of a given width.
+/// A spatial hash of points in cubes of a given width.
 class CubeGrid {
  public:
   explicit CubeGrid(double width_nm) : width_nm_(width_nm) {}
@@ -49,7 +49,7 @@ class CubeGrid {
   Vec3 cell(const Vec3& p) const {
     return {std::floor(p.x / width_nm_), std::floor(p.y / width_nm_), std::floor(p.z / width_nm_)};
   }
-  // Cubes of equal keys are only looked at in vain.
+  // Different cubes with equal keys only cost time.
   static std::uint64_t key(const Vec3& c) {
     std::uint64_t h = 0;
     for (const double v : {c.x, c.y, c.z}) {
@@ -74,10 +74,11 @@ std::vector<std::uint32_t> rim_points(const TriangleMesh& mesh) {
   return points;
 }
 
-/// Sets of triangles that hang together by edges of exactly two, and who must turn within them.
+/// Patches of triangles that are connected by edges of exactly two triangles, and the triangles to
+/// be turned within them.
 struct Patches {
-  std::vector<std::uint32_t> patch;  ///< of every triangle, from 0
-  std::vector<unsigned char> turn;   ///< of every triangle: against its patch's first one
+  std::vector<std::uint32_t> patch;  ///< patch of every triangle, from 0
+  std::vector<unsigned char> turn;   ///< 1: oriented against the first triangle of its patch
   std::uint32_t count = 0;
 };
 
@@ -121,7 +122,7 @@ Patches find_patches(const TriangleMesh& mesh) {
   return p;
 }
 
-/// Turns whole patches over where that leaves fewer unanswered sides at non-manifold edges.
+/// Turns over whole patches if that leaves fewer unpaired sides at non-manifold edges.
 void balance_patches(const TriangleMesh& mesh, Patches& p) {
   struct Use {
     std::uint32_t patch;
@@ -183,7 +184,7 @@ Box box_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles
   return box;
 }
 
-/// How often closed triangles wind around a point.
+/// The winding number of closed triangles around a point.
 double winding(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles,
                const Vec3& p) {
   double sum = 0;
@@ -241,11 +242,11 @@ std::size_t remove_duplicates(TriangleMesh& mesh) {
     for (std::uint32_t i = 0; i < triangles; ++i) {
       Triangle t = mesh.triangles[i];
       std::ranges::sort(t);
-      put(t[0], std::uint64_t{t[1]} << 32 | i);  // the same first two corners are neighbours
+      put(t[0], std::uint64_t{t[1]} << 32 | i);  // groups triangles by their two lowest corners
     }
   });
   std::vector<unsigned char> drop(triangles, 0);
-  std::vector<std::uint32_t> balanced;  // one of each group that runs both ways equally often
+  std::vector<std::uint32_t> balanced;  // one of each group with equally many of both orientations
   const auto is_even = [](Triangle t) {
     const bool odd = (t[0] > t[1]) ^ (t[0] > t[2]) ^ (t[1] > t[2]);
     return !odd;
@@ -276,7 +277,7 @@ std::size_t remove_duplicates(TriangleMesh& mesh) {
     }
   }
   if (!balanced.empty()) {
-    // A pair of faces back to back bounds nothing, unless it closes the surface around it.
+    // Two opposite faces bound nothing, unless they close the surface around them.
     std::vector<unsigned char> lone_sides(triangles, 0);
     visit_edges(mesh.triangles, mesh.vertices_nm.size(), [&](const EdgeUse& edge) {
       std::size_t kept = 0;

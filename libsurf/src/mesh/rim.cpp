@@ -8,7 +8,8 @@
 namespace surf {
 
 RimCentroid rim_centroid(const std::vector<Vec3>& rim) {
-  const Vec3 origin = rim.front();  // far from (0, 0) the area would drown in rounding
+  // Relative to a vertex, because rounding would spoil the area far from (0, 0).
+  const Vec3 origin = rim.front();
   RimCentroid c{0, 0, 0};
   for (std::size_t i = 0; i < rim.size(); ++i) {
     const Vec3 a = rim[i] - origin;

@@ -11,15 +11,17 @@ namespace surf {
 
 inline double cross_xy(const Vec3& a, const Vec3& b) { return a.x * b.y - a.y * b.x; }
 
-/// The centroid of the polygon's area, and the signed area: > 0 where it runs counter-clockwise.
+/// The centroid of the polygon's area, and the signed area: > 0 if the polygon runs
+/// counter-clockwise.
 struct RimCentroid {
   double x, y, area;
 };
 
 RimCentroid rim_centroid(const std::vector<Vec3>& rim);
 
-/// The angles from the centroid that neighbouring vertices enclose; empty if the polygon, run
-/// counter-clockwise, goes back anywhere or round more than once: it is not star-shaped then.
+/// The angles between neighbouring vertices, seen from the centroid. Empty if the polygon, which
+/// must run counter-clockwise, turns back anywhere or runs round more than once, because it is not
+/// star-shaped then.
 std::vector<double> star_angles(const std::vector<Vec3>& rim, const RimCentroid& c);
 
 }  // namespace surf

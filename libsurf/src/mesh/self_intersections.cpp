@@ -14,10 +14,10 @@ namespace {
 
 using Pair = std::array<std::uint32_t, 2>;
 
-constexpr std::size_t block_size = 4096;    // triangles a unit of work looks at
-constexpr std::size_t blocks_a_round = 64;  // between looks at the limit
+constexpr std::size_t block_size = 4096;    // triangles per unit of work
+constexpr std::size_t blocks_a_round = 64;  // between checks of the limit
 
-/// Tells whether two triangles of a welded mesh meet where they need not.
+/// Tests whether two triangles of a welded mesh meet beyond their shared corners.
 class Meeting {
  public:
   Meeting(const TriangleTree& tree, std::vector<Triangle> points)
@@ -88,7 +88,7 @@ SelfIntersections find_self_intersections(const TriangleMesh& mesh,
                },
                Watch{{}, watch.cancel});
 
-  constexpr double searching_from = 0.2;  // of the progress
+  constexpr double searching_from = 0.2;  // share of the progress
   watch.report(searching_from, 1);
   SelfIntersections result;
   std::vector<std::vector<Pair>> found;

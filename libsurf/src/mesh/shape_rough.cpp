@@ -44,8 +44,8 @@ std::vector<double> kernel(double correlation_nm, double pitch_nm) {
   return weights;
 }
 
-/// Convolves every column with the weights, periodically, and returns the transpose: done twice, it
-/// smooths along both axes and the inner loop always runs along memory.
+/// Convolves every column periodically with the weights and returns the transpose. Applied twice,
+/// it smooths along both axes, and the inner loop always runs along memory.
 Grid<double> smoothed_transpose(const Grid<double>& in, const std::vector<double>& weights) {
   const int reach = static_cast<int>(weights.size() / 2);
   const int width = in.width();
@@ -85,7 +85,7 @@ void require_short(double correlation_nm, const HeightField& field) {
   }
 }
 
-/// Moves the mean to 0 and scales to the root-mean-square height.
+/// Shifts the mean to 0 and scales to the root-mean-square height.
 void set_rms(HeightField& field, double rms_nm) {
   std::vector<double>& smooth = field.z_nm.data();
   const double offset = mean(smooth, [](double v) { return v; });
@@ -94,7 +94,7 @@ void set_rms(HeightField& field, double rms_nm) {
   for (double& v : smooth) v *= factor;
 }
 
-/// The spectrum between its points.
+/// The spectrum, interpolated between its points.
 double density(const std::vector<SpectralDensity>& spectrum, double frequency_per_nm) {
   const auto above =
       std::ranges::lower_bound(spectrum, frequency_per_nm, {}, &SpectralDensity::frequency_per_nm);

@@ -31,7 +31,8 @@ std::vector<double> ticks(double lower, double upper, int count) {
   return values;
 }
 
-/// The side of the box across `axis`, its own vertices included; `high` is the upper one.
+/// Adds a side of the box perpendicular to `axis`, with vertices of its own; `high`: the upper
+/// side.
 void add_side(TriangleMesh& mesh, const Ticks& t, std::size_t axis, bool high) {
   const std::size_t u = (axis + 1) % 3;
   const std::size_t v = (axis + 2) % 3;
@@ -78,7 +79,8 @@ std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
   return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
 }
 
-/// Splits every triangle of a unit sphere in four, with one vertex per edge's middle.
+/// Splits every triangle of a unit sphere into four, with one new vertex for the middle of each
+/// edge.
 TriangleMesh split_sphere(const TriangleMesh& coarse) {
   std::vector<std::uint64_t> edges;
   edges.reserve(coarse.triangles.size() * 3);

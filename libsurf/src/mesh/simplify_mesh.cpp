@@ -24,23 +24,25 @@ struct Traits : OpenMesh::DefaultTraits {
   using Normal = OpenMesh::Vec3d;
 };
 using HalfedgeMesh = OpenMesh::TriMesh_ArrayKernelT<Traits>;
-using PointNumber = OpenMesh::VPropHandleT<std::uint32_t>;  // a vertex's number in the merged mesh
+// Index of the vertex in the merged mesh.
+using PointNumber = OpenMesh::VPropHandleT<std::uint32_t>;
 using Decimater = OpenMesh::Decimater::DecimaterT<HalfedgeMesh>;
 
-constexpr unsigned max_valence = 64;  // beyond it OpenMesh's costs grow with its square
-constexpr std::size_t step_down = 4;  // fewer triangles from run to run
+constexpr unsigned max_valence = 64;  // beyond it OpenMesh's cost grows with its square
+constexpr std::size_t step_down = 4;  // factor between runs
 constexpr Side sides_between_looks = 3 * 16384;
-constexpr int bisections =
-    5;  // of the last step: the number ends within a few per cent of the fewest
+// Bisections of the last step; the result is within a few per cent of the fewest triangles.
+constexpr int bisections = 5;
 
 bool before(const Vec3& a, const Vec3& b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
 
-/// A halfedge mesh of a merged mesh, cut where more than two triangles meet or disagree; vertices
-/// along cuts and rims are locked: cuts fit together again, rims stay; so are hubs of great fans
-/// and the places of `fixed`, which is sorted. Coordinates are taken from `middle`: OpenMesh
-/// computes plane equations, which suffer far from the origin.
+/// Converts a merged mesh to a halfedge mesh, cut where more than two triangles meet or
+/// orientations disagree. Vertices along cuts are locked so that the cuts fit together again. Also
+/// locked are vertices at rims, vertices with many triangles, and the places of `fixed`, which is
+/// sorted. Coordinates are relative to `middle`, because OpenMesh's plane equations lose precision
+/// far from the origin.
 HalfedgeMesh to_halfedges(const TriangleMesh& mesh, const Vec3& middle, PointNumber& number,
                           const std::vector<Vec3>& fixed, const Watch& watch) {
   const std::vector<Triangle>& triangles = mesh.triangles;
@@ -88,7 +90,7 @@ HalfedgeMesh to_halfedges(const TriangleMesh& mesh, const Vec3& middle, PointNum
   return out;
 }
 
-/// The triangles that are left, over the vertices of the merged mesh.
+/// The remaining triangles, over the vertices of the merged mesh.
 TriangleMesh from_halfedges(const HalfedgeMesh& mesh, const PointNumber& number,
                             const TriangleMesh& original) {
   TriangleMesh out{original.vertices_nm, {}};
@@ -101,8 +103,9 @@ TriangleMesh from_halfedges(const HalfedgeMesh& mesh, const PointNumber& number,
   return out;
 }
 
-/// Allows all; it is asked before every vertex that may go, and told of every one that has gone.
-template <class MeshT>  // as the macro wants it
+/// A decimation module that allows every collapse. It checks for cancellation before collapses and
+/// reports progress after them.
+template <class MeshT>  // the macro needs this form
 class Looking : public OpenMesh::Decimater::ModBaseT<MeshT> {
  public:
   DECIMATING_MODULE(Looking, MeshT, Looking);
@@ -124,13 +127,13 @@ class Looking : public OpenMesh::Decimater::ModBaseT<MeshT> {
   }
 
  private:
-  static constexpr std::size_t between_looks = 2048;  // a millisecond or so
+  static constexpr std::size_t between_looks = 2048;  // about a millisecond
   const Watch* watch_ = nullptr;
   double to_go_ = 1;
   std::size_t asked_ = 0, gone_ = 0;
 };
 
-/// One run down to a number of triangles, or as near to it as no face turns over.
+/// Decimates to a number of triangles, or as near to it as possible without turning faces over.
 TriangleMesh decimated(const TriangleMesh& mesh, std::size_t triangles,
                        const std::vector<Vec3>& fixed, const Watch& watch) {
   const Vec3 middle = bounds(mesh).center_nm();
@@ -148,7 +151,8 @@ TriangleMesh decimated(const TriangleMesh& mesh, std::size_t triangles,
   decimater.add(looking);
   const double faces_to_go =
       static_cast<double>(mesh.triangles.size()) - static_cast<double>(triangles);
-  decimater.module(looking).watch(watch, std::max(1.0, 0.5 * faces_to_go));  // a vertex has two
+  decimater.module(looking).watch(
+      watch, std::max(1.0, 0.5 * faces_to_go));  // a collapse removes two faces
   watch.check();
   if (!decimater.initialize()) {
     throw std::logic_error("simplify_mesh: the decimater refuses its modules");
@@ -159,8 +163,7 @@ TriangleMesh decimated(const TriangleMesh& mesh, std::size_t triangles,
   return merge_equal_vertices(from_halfedges(work, number, mesh));
 }
 
-/// Goes down from a mesh to fewer and fewer triangles as long as the measured deviation from the
-/// original allows.
+/// Reduces a mesh step by step as long as the measured deviation from the original allows it.
 class Descent {
  public:
   Descent(const TriangleMesh& original, const SimplifyOptions& options, SimplifySummary& summary)
@@ -187,7 +190,7 @@ class Descent {
 
  private:
   bool attempt(std::size_t triangles) {
-    // How many attempts there will be is not known: each gets half of what is left.
+    // The number of attempts is not known, so each gets half of the remaining progress.
     const double from = 1 - std::pow(0.5, tries_), to = 1 - std::pow(0.5, ++tries_);
     const Watch watch = options_.watch.part(from, to);
     TriangleMesh next = decimated(best_, triangles, fixed_, watch.part(0, 0.7));

@@ -15,10 +15,10 @@ void require_share(double value, const char* subject) {
   throw UsageError(subject, "is " + format_exact(value), "Give a number between 0 and 1");
 }
 
-/// Which points are joined by an edge, each pair once, and which points may move.
+/// The edges between points, each pair once, and the points that may move.
 struct Net {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
-  std::vector<double> share;  ///< 1 / number of neighbours; 0 where a point stays
+  std::vector<double> share;  ///< 1 / number of neighbours; 0: the point stays
 };
 
 Net make_net(const std::vector<Triangle>& triangles, std::size_t points) {

@@ -53,7 +53,7 @@ class Thinning {
 
   double deviation_nm() const { return std::max(crossing_nm_, sample_deviation_nm()); }
 
-  /// At samples alone.
+  /// The deviation at samples only.
   double sample_deviation_nm() const {
     double largest = 0;
     for (const Worst& w : worst_) largest = std::max(largest, w.error_nm);
@@ -61,12 +61,13 @@ class Thinning {
   }
 
  private:
-  // The sample over a triangle that is farthest from it.
+  // The sample of a triangle with the largest deviation from it.
   struct Worst {
     double error_nm = 0;
     LatticePoint at;
   };
-  // Triangles change while they wait: entries of another error are out of date.
+  // Triangles change while they wait in the queue. An entry is outdated if its error differs from
+  // the triangle's.
   struct Waiting {
     double error_nm;
     std::uint32_t triangle;
@@ -88,7 +89,7 @@ class Thinning {
     const auto [least_y, most_y] = std::minmax({a.y, b.y, c.y});
     Worst worst;
     for (std::int32_t y = least_y; y <= most_y; ++y) {
-      // Where the row is to the left of all sides: u x + v >= 0, in whole numbers.
+      // The part of the row that lies to the left of all sides: u x + v >= 0, in integers.
       std::int64_t from = least_x, to = most_x;
       for (const auto& [p, q] : {std::pair{a, b}, {b, c}, {c, a}}) {
         const std::int64_t u = std::int64_t{p.y} - q.y;
@@ -110,7 +111,7 @@ class Thinning {
     std::ranges::sort(changed_);
     changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
     worst_.resize(mesh_.triangles().size());
-    if (worst_.size() < few) watch_.check();  // triangles are large, and take long
+    if (worst_.size() < few) watch_.check();  // triangles are still large and take long
     for (const std::uint32_t t : changed_) {
       worst_[t] = worst_of(t);
       if (worst_[t].error_nm > tolerance_nm_) waiting_.push({worst_[t].error_nm, t});
@@ -120,7 +121,7 @@ class Thinning {
 
   static constexpr std::uint32_t few = 4096;
 
-  // A sample inside makes two triangles more.
+  // A sample inside a triangle adds two triangles.
   bool full() const { return mesh_.triangles().size() + 2 > limit_; }
 
   void insert(LatticePoint p, std::uint32_t triangle) {
@@ -129,7 +130,7 @@ class Thinning {
     renew();
   }
 
-  // Triangles grow in number about as one over the error.
+  // The number of triangles is roughly proportional to 1 / error.
   void report(double error_nm) const {
     if (mesh_.triangles().size() % 1024 > 1) return;
     const double by_number =
@@ -148,8 +149,9 @@ class Thinning {
     }
   }
 
-  /// Calls visit(before, after, share, t) where the line from p to q crosses the line between two
-  /// neighbouring samples, `share` of the way from one to the other and `t` of the way from p to q.
+  /// Calls visit(before, after, share, t) for each crossing of the line from p to q with a line
+  /// between two neighbouring samples. The crossing is at `share` of the way from `before` to
+  /// `after` and at `t` of the way from p to q.
   template <class Visit>
   static void visit_crossings(LatticePoint p, LatticePoint q, const Visit& visit) {
     const std::int64_t dx = std::int64_t{q.x} - p.x, dy = std::int64_t{q.y} - p.y;
@@ -162,7 +164,7 @@ class Thinning {
     for (const auto& f : families) {
       const std::int64_t count = std::abs(f.per), sign = f.per < 0 ? -1 : 1;
       for (std::int64_t i = 1; i < count; ++i) {
-        // Along the family's lines, positions are p's plus i * across / count.
+        // The i-th crossing is displaced from p by i * across / count.
         const std::int64_t moved = i * f.across, whole = floor_divided(moved, count);
         const std::int64_t rest = moved - whole * count;
         if (rest == 0) continue;  // at a sample
@@ -183,7 +185,8 @@ class Thinning {
     }
   }
 
-  // Adds a sample beside every crossing that is off by more than the tolerance; false if none is.
+  // Adds a sample next to the worst crossing of every edge whose deviation exceeds the tolerance.
+  // Returns false if there is none, or if no triangles are left.
   bool insert_at_crossings() {
     struct Site {
       LatticePoint at;
@@ -240,8 +243,9 @@ Thinned thin(const HeightField& field, double tolerance_nm, std::size_t limit, c
   return {thinning.mesh(), thinning.deviation_nm(), thinning.sample_deviation_nm()};
 }
 
-/// The best of so many triangles: samples alone would be served first, and edges between them left
-/// far off. So the least tolerance that they allow is searched.
+/// The best approximation with a limited number of triangles. A single pass would serve the samples
+/// first and leave the crossings of edges with large deviations, so the smallest feasible tolerance
+/// is searched.
 Thinned thin_to_limit(const HeightField& field, const ThinOptions& o) {
   Thinned best = thin(field, o.tolerance_nm, o.triangles, o.watch.part(0, 0.3));
   double low = std::max(o.tolerance_nm, best.sample_deviation_nm);

@@ -16,7 +16,7 @@ namespace {
 // Sides of triangles are numbered with 32 bits.
 constexpr std::size_t max_triangles = std::numeric_limits<std::uint32_t>::max() / 3;
 
-// 0 and -0 get the same bits; so do equal NaNs, which keeps the search for them short.
+// 0 and -0 get the same bits. Equal NaNs do, too, which keeps the search for them short.
 std::array<std::uint64_t, 3> coordinate_bits(const Vec3& v) {
   return {std::bit_cast<std::uint64_t>(v.x + 0.0), std::bit_cast<std::uint64_t>(v.y + 0.0),
           std::bit_cast<std::uint64_t>(v.z + 0.0)};

@@ -11,8 +11,9 @@ namespace surf {
 namespace {
 
 constexpr std::size_t leaf_size = 4;
-constexpr std::size_t block_size = 65536;  // triangles of a unit of work
-constexpr double negligible = 1e-12;       // of the diagonal: a point that near lies on the surface
+constexpr std::size_t block_size = 65536;  // triangles per unit of work
+// Share of the diagonal; a point this close lies on the surface.
+constexpr double negligible = 1e-12;
 
 double squared(const Vec3& v) { return dot(v, v); }
 
@@ -40,7 +41,7 @@ TriangleTree::TriangleTree(const MeshView& mesh, const Box& region, const Watch&
 }
 
 void TriangleTree::build(const Watch& watched, int threads) {
-  const Watch watch{{}, watched.cancel};  // it is short beside what it is for
+  const Watch watch{{}, watched.cancel};  // building is short compared to the use of the tree
   struct Item {
     std::array<float, 3> middle;
     std::uint32_t triangle;
@@ -80,7 +81,7 @@ void TriangleTree::build(const Watch& watched, int threads) {
              (a.middle[axis] == b.middle[axis] && a.triangle < b.triangle);
     });
   };
-  // The top one level at a time, then whole branches.
+  // Builds the top levels one by one, then whole branches in parallel.
   const int top = std::min(levels_, 8);
   for (int level = 0; level < top; ++level)
     parallel_for(
@@ -118,7 +119,7 @@ void TriangleTree::build(const Watch& watched, int threads) {
   negligible_squared_ = negligible * negligible * squared(diagonal);
 }
 
-// The box of a leaf from its triangles, of any other node from its children.
+// Sets the box of a leaf from its triangles, that of any other node from its children.
 void TriangleTree::bound(const Place& place) {
   Node& box = nodes_[place.node];
   if (place.level != levels_) {

@@ -13,14 +13,14 @@ namespace surf {
 namespace {
 
 constexpr std::size_t points_per_unit = 4096;
-constexpr double ridge =
-    1e-9;  // of the mean square of the terms: decides only what nothing else does
+// Relative to the mean square of the terms; it matters only for otherwise undetermined terms.
+constexpr double ridge = 1e-9;
 
 /// z = p0 x + p1 y + p2 x^2 / 2 + p3 x y + p4 y^2 / 2 + p5.
 using Quadric = std::array<double, 6>;
 
-/// Least squares by the normal equations, of which the lower triangle is summed; positive definite
-/// by the ridge.
+/// Least squares by the normal equations. Only the lower triangle is summed; the ridge makes them
+/// positive definite.
 class QuadricFit {
  public:
   void add(double x, double y, double z) {
@@ -69,7 +69,7 @@ double mean_curvature_of(const Quadric& p) {
 
 struct Net {
   std::vector<Vec3> place, normal;
-  Buckets neighbours;  // of every point, some twice
+  Buckets neighbours;  // of every point, some of them twice
 };
 
 Net make_net(const TriangleMesh& mesh, const Weld& weld) {
@@ -93,8 +93,8 @@ Net make_net(const TriangleMesh& mesh, const Weld& weld) {
   return net;
 }
 
-/// The points up to two edges away, itself included, each once; of the second those alone that face
-/// its way, not the other side of something thin.
+/// Collects the points up to two edges away, including the point itself, each once. A point two
+/// edges away must face the same way, because it may lie on the other side of a thin body.
 void collect(const Net& net, std::uint32_t point, std::vector<std::uint32_t>& out) {
   const auto add_neighbours = [&](std::uint32_t p) {
     for (std::size_t i = net.neighbours.begin[p]; i < net.neighbours.begin[p + 1]; ++i)

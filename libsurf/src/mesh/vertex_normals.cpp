@@ -8,7 +8,8 @@
 namespace surf {
 namespace {
 
-/// Its sides as vectors of length 1 or less, so that products neither overflow nor vanish.
+/// The sides of a triangle, scaled to length 1 or less, so that products neither overflow nor
+/// vanish.
 std::array<Vec3, 3> scaled_sides(const TriangleMesh& mesh, const Triangle& t) {
   const auto& v = mesh.vertices_nm;
   std::array<Vec3, 3> sides{v[t[1]] * 0.25 - v[t[0]] * 0.25, v[t[2]] * 0.25 - v[t[1]] * 0.25,
@@ -37,7 +38,7 @@ std::vector<Vec3> vertex_normals(const TriangleMesh& mesh) {
       normals[t[corner]] += normal * std::atan2(size, cosine);
     }
   }
-  constexpr double cancelled = 1e-12;  // beside angles of pi/3
+  constexpr double cancelled = 1e-12;  // compared to angles of pi/3
   for (Vec3& normal : normals) {
     const double size = length(normal);
     normal = size > cancelled ? normal * (1 / size) : Vec3{0, 0, 1};

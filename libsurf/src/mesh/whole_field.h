@@ -5,8 +5,8 @@
 
 namespace surf {
 
-/// Throws InvalidInput on a damaged field or one with an invalid sample, Unsupported where samples
-/// are too many to be numbered.
+/// Throws InvalidInput for a damaged field or one with an invalid sample, Unsupported if there are
+/// too many samples for 32-bit numbers.
 void require_no_holes(const HeightField& field);
 
 }  // namespace surf

@@ -8,16 +8,17 @@
 
 namespace surf {
 
-/// An affine map as three landmarks, like the thesis (7.2.1): where the SEM image's lower left,
-/// lower right and upper left corners lie in the AFM's frame, x0 y0 x1 y1 x2 y2. All six have the
-/// same scale. Lengths in registration's sources are SEM pixels, about the middle of each image.
+/// An affine map, represented by three landmarks as in the thesis (7.2.1): the positions of the SEM
+/// image's lower left, lower right and upper left corners in the AFM's frame, x0 y0 x1 y1 x2 y2.
+/// All six numbers have the same scale. Lengths in the sources of the registration are SEM pixels,
+/// relative to the centre of each image.
 using Corners = std::array<double, 6>;
 
-/// Weights of the three corners at a place of the SEM image; they add up to 1.
+/// Weights of the three corners at a place of the SEM image; the weights add up to 1.
 using Shares = std::array<double, 3>;
 
-/// Means of products of shares over the places that matter: what turns corners into a root mean
-/// square.
+/// Means of products of shares over the relevant places. They convert differences of corners into a
+/// root mean square distance.
 using Moments = std::array<std::array<double, 3>, 3>;
 
 class CornerFrame {
@@ -42,12 +43,13 @@ class CornerFrame {
   std::array<Point2, 3> corners_nm_;
 };
 
-/// Where a place of the SEM image goes.
+/// The position to which a place of the SEM image is mapped.
 inline Point2 place(const Corners& c, const Shares& w) {
   return {w[0] * c[0] + w[1] * c[2] + w[2] * c[4], w[0] * c[1] + w[1] * c[3] + w[2] * c[5]};
 }
 
-/// Root mean square distance of where two maps bring the places that the moments are of.
+/// The root mean square distance between the positions under two maps, over the places that the
+/// moments were computed from.
 double distance_px(const Corners& a, const Corners& b, const Moments& moments);
 
 }  // namespace surf

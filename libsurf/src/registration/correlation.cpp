@@ -13,7 +13,8 @@ namespace {
 constexpr std::size_t fewest_samples = 24;
 constexpr double settled_px = 2e-3;
 constexpr double difference_px = 0.05;
-constexpr double least_stiffness = 1e-6;  // over the largest: what is softer is left alone
+// Relative to the largest stiffness; softer motions are not moved.
+constexpr double least_stiffness = 1e-6;
 constexpr double longest_step_px = 1;
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
@@ -26,7 +27,7 @@ double normalise(std::vector<double>& v) {
   mean /= static_cast<double>(v.size());
   for (double& x : v) x -= mean, sum += x * x;
   const double norm = std::sqrt(sum);
-  // What rounding leaves of one colour is no structure.
+  // The rounding errors of an image of one colour are no structure.
   if (!(norm > 1e-12 * (std::abs(mean) + 1e-300) * std::sqrt(static_cast<double>(v.size())))) {
     std::fill(v.begin(), v.end(), 0.0);
     return 0;
@@ -35,7 +36,7 @@ double normalise(std::vector<double>& v) {
   return norm;
 }
 
-/// As the solver asks for it.
+/// The interface that the solver requires.
 struct Misfit {
   using Scalar = double;
   enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = 6 };
@@ -95,7 +96,7 @@ double Correlation::evaluate(const double* at, double* residuals, double* jacobi
     }
     double along_a = 0;
     for (std::size_t k = 0; k < n; ++k) {
-      column[k] -= along_b * b[k];  // how the normalised b changes
+      column[k] -= along_b * b[k];  // derivative of the normalised b
       along_a += column[k] * a_[k];
     }
     for (std::size_t k = 0; k < n; ++k) column[k] = -r * column[k] - along_a * b[k];
@@ -145,7 +146,7 @@ Slopes slopes_at(const Correlation& correlation, const Corners& corners) {
       h(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(p)) =
           (up[i] - down[i]) / (2 * difference_px);
   }
-  h = (0.5 * (h + h.transpose())).eval();  // but for rounding it is symmetric
+  h = (0.5 * (h + h.transpose())).eval();  // symmetric up to rounding
   Slopes slopes{correlation.gradient(corners), {}};
   std::copy_n(h.data(), 36, slopes.second.begin());
   return slopes;
@@ -153,11 +154,11 @@ Slopes slopes_at(const Correlation& correlation, const Corners& corners) {
 
 namespace {
 
-/// Newton's steps. With noise in the AFM's image the product of slopes is far too stiff along
-/// motions that little holds, and Levenberg and Marquardt's method crawls.
+/// Newton steps. With noise in the AFM's image, the product of slopes is far too stiff along weakly
+/// determined motions, and Levenberg and Marquardt's method becomes very slow.
 class Newton {
  public:
-  /// Returns how far it went, pixels.
+  /// Makes a step and returns its length in pixels.
   double step(const BlurLevel& level, Corners& corners, int& evaluations) {
     const Correlation correlation(level, corners);
     if (correlation.size() < fewest_samples) return 0;

@@ -8,26 +8,27 @@
 
 namespace surf {
 
-/// What correlates badly, as least squares. With a the SEM's and b the AFM's intensities over a
-/// fixed set of samples, each less its mean and over its norm, and r = max(0, a . b) their
-/// correlation, the residuals a - r b have the squared norm 1 - r^2, which is least where the
-/// correlation is largest; their derivatives by the corners are exact. Samples that leave the AFM's
-/// image see its edge.
+/// Correlation as a least-squares problem. Let a be the SEM's and b the AFM's intensities over a
+/// fixed set of samples, each minus its mean and divided by its norm, and r = max(0, a . b) their
+/// correlation. The residuals a - r b have the squared norm 1 - r^2, which is smallest where the
+/// correlation is largest. Their derivatives by the corners are exact. Samples outside the AFM's
+/// image get the value of its edge.
 class Correlation {
  public:
-  /// The samples as they overlap under `corners`.
+  /// Uses the samples that overlap under `corners`.
   Correlation(const BlurLevel& level, const Corners& corners);
 
   std::size_t size() const { return overlap_.size(); }
   const std::vector<std::size_t>& overlap() const { return overlap_; }
   const std::vector<double>& sem() const { return a_; }  ///< normalised
 
-  /// Residuals, and if wanted their derivatives by each corner, one column of `size()` after the
-  /// other. Returns the correlation; 0 and zeros where the AFM's image is of one colour.
+  /// Computes the residuals and, if wanted, their derivatives by each corner (one column of
+  /// `size()` after the other). Returns the correlation; 0 and zeros if the AFM's image is of one
+  /// colour.
   double evaluate(const double* corners, double* residuals, double* jacobian) const;
 
-  /// Of half the residuals' squared norm by the corners, quicker than by `evaluate`; zeros where
-  /// the intensities do not rise together.
+  /// The gradient of half the squared norm of the residuals by the corners, faster than with
+  /// `evaluate`. Zeros if the intensities do not rise together.
   Corners gradient(const Corners& corners) const;
 
  private:
@@ -36,9 +37,9 @@ class Correlation {
   std::vector<double> a_;
 };
 
-/// First and second derivatives of half the residuals' squared norm by the corners; the second by
-/// central differences of the exact first, so that noise in the AFM's image is not taken for
-/// structure.
+/// First and second derivatives of half the squared norm of the residuals by the corners. The
+/// second derivatives are central differences of the exact first ones, so that noise in the AFM's
+/// image is not mistaken for structure.
 struct Slopes {
   Corners first{};
   std::array<double, 36> second{};
@@ -47,14 +48,15 @@ Slopes slopes_at(const Correlation& correlation, const Corners& corners);
 
 struct CorrelationFit {
   Corners corners{};
-  Agreement agreement;  ///< at the end, over all that overlaps there
+  Agreement agreement;  ///< at the result, over all samples that overlap there
   int evaluations = 0;
-  bool settled = false;  ///< the last steps moved nothing by more than a thousandth of a pixel
+  /// The last step moved every corner by less than 0.002 pixels times the stride of the samples.
+  bool settled = false;
 };
 
-/// Largest correlation from a start on, by Levenberg and Marquardt's method; the overlap is renewed
-/// up to `rounds` times. Then at least one and at most so many of Newton's steps, if any are
-/// wanted.
+/// Maximises the correlation from an initial map, by Levenberg and Marquardt's method; the overlap
+/// is updated up to `rounds` times. If `newton_steps` is above 0, at least one and at most
+/// `newton_steps` Newton steps follow.
 CorrelationFit fit_correlation(const BlurLevel& level, const Corners& start, int rounds,
                                int iterations, int newton_steps);
 

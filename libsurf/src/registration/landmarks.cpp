@@ -13,7 +13,8 @@ namespace surf {
 namespace {
 
 constexpr const char* subject = "landmarks";
-// Of the spread of all points. Nearer than people can click, and far from what rounding can reach.
+// Relative to the spread of all points: smaller than people can click, and far above rounding
+// errors.
 constexpr double coincident = 1e-6, collinear = 1e-4;
 
 using Points = Eigen::Matrix<double, Eigen::Dynamic, 2>;
@@ -32,12 +33,12 @@ std::string list_all(Eigen::Index count) {
   return list;
 }
 
-/// Points less their mean, over their root mean square distance from it.
+/// Points minus their mean, divided by their root mean square distance from it.
 Points in_own_measure(const Points& points, const char* image) {
   const Eigen::RowVector2d mean = points.colwise().mean();
   Points centred = points.rowwise() - mean;
   const double spread = std::sqrt(centred.rowwise().squaredNorm().mean());
-  // Differences of large numbers have few digits left.
+  // Differences of large numbers have few significant digits.
   if (!(spread > 1e-12 * (1 + mean.norm())))
     throw InvalidInput(
         subject,
@@ -46,7 +47,7 @@ Points in_own_measure(const Points& points, const char* image) {
   return centred / spread;
 }
 
-/// Which pairs are at fault, where the points do not span the plane.
+/// Throws an error that names the faulty pairs if the points do not span the plane.
 void require_spread(const Points& points, const char* image) {
   const Points centred = in_own_measure(points, image);
   const Eigen::JacobiSVD<Points> svd(centred);
@@ -89,7 +90,7 @@ LandmarkFit fit_landmarks(const std::vector<LandmarkPair>& pairs) {
   require_spread(sem, "SEM");
   require_spread(afm, "AFM");
 
-  // About the means, so that places far from the origin lose no digits.
+  // Relative to the means, so that places far from the origin lose no digits.
   const Eigen::RowVector2d sem_mean = sem.colwise().mean(), afm_mean = afm.colwise().mean();
   const Eigen::Matrix2d linear =
       (sem.rowwise() - sem_mean).colPivHouseholderQr().solve(afm.rowwise() - afm_mean).transpose();

@@ -14,8 +14,8 @@ namespace surf {
 namespace {
 
 constexpr int fewest_bins = 2, most_bins = 128;
-constexpr int bins_of_a_window =
-    4;  // Parzen's windows are sampled by so many bins for one deviation
+// Bins per standard deviation of Parzen's windows.
+constexpr int bins_of_a_window = 4;
 constexpr std::size_t fewest_samples = 24;
 constexpr double settled_px = 0.01;
 constexpr int most_evaluations = 600;
@@ -40,7 +40,8 @@ std::vector<double> values_of(const BlurLevel& level) {
   return values;
 }
 
-/// As many values of the AFM's image as the SEM has samples, so that both follow the same rule.
+/// Takes as many values of the AFM's image as the SEM has samples, so that the same rule applies to
+/// both.
 std::vector<double> afm_values_of(const BlurLevel& level) {
   std::vector<double> values;
   const Grid<double>& grid = level.afm.samples();
@@ -51,7 +52,8 @@ std::vector<double> afm_values_of(const BlurLevel& level) {
   return values;
 }
 
-/// Gaussian windows over one axis of a table; what would fall outside stays at the last bin.
+/// Convolves one axis of a table with Gaussian windows; values that would fall outside stay in the
+/// last bin.
 void spread(std::vector<double>& table, int rows, int columns, bool along_rows, double sigma) {
   const int n = along_rows ? columns : rows;
   const int reach = std::min(n - 1, static_cast<int>(std::ceil(4 * sigma)));
@@ -163,8 +165,8 @@ double JointHistogram::information() const {
     const double here = parzen_ ? asked_[i] : table[i];
     if (!(here > 0)) continue;
     weight += here;
-    // Where no window reaches, a density of nothing would be worth -infinity: one pair in all is
-    // less than any.
+    // A pair that no window reaches would have the density 0 and contribute -infinity. Its density
+    // is set below that of a single pair.
     const double joint = std::max(table[i], 1e-3 / total);
     sum +=
         here *
@@ -232,7 +234,7 @@ InformationFit fit_information(const BlurLevel& level, const MutualInformationOp
   const nlopt_result result = nlopt_optimize(optimiser.get(), x.data(), &best);
   fit.evaluations = search.evaluations;
   if (search.failure) std::rethrow_exception(search.failure);
-  // Rounding may end it where nothing is left to gain, which is as good.
+  // If rounding ends the search, nothing is left to gain: this counts as converged.
   const bool ended = result == NLOPT_XTOL_REACHED || result == NLOPT_FTOL_REACHED ||
                      result == NLOPT_SUCCESS || result == NLOPT_ROUNDOFF_LIMITED;
   bool at_limit = false;
@@ -247,7 +249,7 @@ InformationFit fit_information(const BlurLevel& level, const MutualInformationOp
 std::array<double, 36> information_covariance(const BlurLevel& level,
                                               const MutualInformationOptions& options,
                                               const Corners& corners, double independent_share) {
-  // Differences wide enough to see past the histogram's own roughness.
+  // The steps are wide compared to the roughness of the histogram.
   constexpr double step = 0.7;
   MutualInformation information(level, options);
   const double here = information(corners);

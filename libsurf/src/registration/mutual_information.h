@@ -9,18 +9,18 @@
 
 namespace surf {
 
-/// Width of histogram bins for a sample (thesis, appendix F): 2 IQR N^-1/3, or 3.49 sigma N^-1/3.
-/// Where half the values are one, so that the first is 0, the second. 0 for values that are all
-/// one.
+/// The width of histogram bins for a sample (thesis, appendix F): 2 IQR N^-1/3, or 3.49 sigma
+/// N^-1/3. If half of the values are equal, so that the first width is 0, the second is used. 0 if
+/// all values are equal.
 double bin_width(std::vector<double> values, BinRule rule);
 
-/// Mutual information of two samples of intensities in pairs, in nats, as appendix F has it (with
-/// the minus sign that its first formula lacks): from a histogram, or with densities estimated from
-/// the samples of even index by Gaussian windows and averaged over those of odd index. Samples of
-/// one colour share nothing: 0.
+/// Mutual information of two samples of intensities in pairs, in nats, as in appendix F (with the
+/// minus sign that its first formula lacks). It comes from a histogram, or from densities that are
+/// estimated from the samples of even index by Gaussian windows and averaged over those of odd
+/// index. The mutual information of samples of one colour is 0.
 class JointHistogram {
  public:
-  /// Bins over all of `a` and all of `b`, as many as the rule gives, 2 to 128 for each.
+  /// Chooses bins over the ranges of `a` and `b`; the rule gives their number, 2 to 128 for each.
   JointHistogram(const std::vector<double>& a, const std::vector<double>& b,
                  const MutualInformationOptions& options);
 
@@ -28,7 +28,7 @@ class JointHistogram {
   int bin_b(double value) const { return b_.bin(value); }
   void clear();
   void add(int a, int b, double weight) { count(a, b) += weight; }
-  /// For Parzen's estimate: a pair that the densities are averaged over.
+  /// For Parzen's estimate: adds a pair that the densities are averaged over.
   void ask(int a, int b) { asked(a, b) += 1; }
   double information() const;
 
@@ -54,12 +54,12 @@ class JointHistogram {
   std::vector<double> counts_, asked_;
 };
 
-/// Mutual information of both images of a level where they overlap, as a function of the corners.
+/// Mutual information of both images of a level in their overlap, as a function of the corners.
 class MutualInformation {
  public:
   MutualInformation(const BlurLevel& level, const MutualInformationOptions& options);
 
-  /// 0 where fewer than 24 samples overlap. Not from several threads at once.
+  /// 0 if fewer than 24 samples overlap. Not thread-safe.
   double operator()(const Corners& corners);
 
  private:
@@ -67,24 +67,25 @@ class MutualInformation {
   MutualInformationOptions options_;
   JointHistogram histogram_;
   std::vector<int> sem_bins_;
-  Grid<int> afm_bins_;  // of the AFM's samples, for partial volumes
+  Grid<int> afm_bins_;  // bins of the AFM's samples, for partial volumes
 };
 
 struct InformationFit {
   Corners corners{};
   double information = 0;
   int evaluations = 0;
-  bool settled = false;  ///< to a hundredth of a pixel, and not at the limit of how far it may go
+  /// Converged to 0.01 pixels (more for blurs above 5 pixels), and not at the limit of the allowed
+  /// displacement.
+  bool settled = false;
 };
 
-/// Largest mutual information from a start on, by Powell's BOBYQA (NLopt), which needs no
-/// derivatives: those of histograms tell nothing.
+/// Maximises the mutual information from an initial map, by Powell's BOBYQA (NLopt). BOBYQA needs
+/// no derivatives, and derivatives of histograms are meaningless.
 InformationFit fit_information(const BlurLevel& level, const MutualInformationOptions& options,
                                const Corners& start, const Watch& watch);
 
-/// Standard errors from the curvature of N times the mutual information, which is the
-/// log-likelihood ratio against independence, with N less by what `independent_share` says of the
-/// samples' residuals.
+/// The covariance of the corners, from the curvature of N times the mutual information, which is
+/// the log-likelihood ratio against independence. N is reduced by `independent_share`.
 std::array<double, 36> information_covariance(const BlurLevel& level,
                                               const MutualInformationOptions& options,
                                               const Corners& corners, double independent_share);

@@ -14,7 +14,7 @@ BlurLevel::BlurLevel(const PlacedImage& sem_image, const PlacedImage& afm_image,
       sem(sem_image, sem_step_x, sem_step_y, blur),
       afm(afm_image, afm_image.pitch_x_nm / frame.pixel_nm(),
           afm_image.pitch_y_nm / frame.pixel_nm(), blur) {
-  // Small images keep enough samples to tell six numbers from.
+  // Small images keep enough samples to determine six numbers.
   const int w = sem_image.values.width(), h = sem_image.values.height();
   stride = std::clamp(std::min(w, h) / 12, 1, stride);
   for (int y = (h - 1) % stride / 2; y < h; y += stride)

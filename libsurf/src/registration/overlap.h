@@ -8,7 +8,7 @@
 
 namespace surf {
 
-/// One blur of both images: the SEM's at some of its pixels, the AFM's everywhere.
+/// Both images at one blur: the SEM's at some of its pixels, the AFM's everywhere.
 struct BlurLevel {
   BlurLevel(const PlacedImage& sem, const PlacedImage& afm, const CornerFrame& frame,
             double blur_px);
@@ -20,28 +20,28 @@ struct BlurLevel {
   };
 
   double blur_px;
-  int stride;  ///< pixels between samples: as many as the blur leaves to tell apart
+  int stride;  ///< pixels between samples: as many as the blur makes indistinguishable
   std::vector<Sample> samples;    ///< valid ones, row by row
-  double sem_step_x, sem_step_y;  ///< pixels of each axis in SEM pixels of the frame
+  double sem_step_x, sem_step_y;  ///< pixel size along each axis, in SEM pixels of the frame
   SmoothImage sem, afm;
 };
 
-/// The samples of a level whose places under a map the AFM's image holds, as indices.
+/// The indices of the samples of a level that a map places inside the AFM's image.
 std::vector<std::size_t> overlap_of(const BlurLevel& level, const Corners& corners);
 
 Moments moments_of(const BlurLevel& level, const std::vector<std::size_t>& overlap);
 
-/// Share of the smaller of both images that lies in the other.
+/// The share of the smaller image that lies in the other.
 double overlap_share(const BlurLevel& level, const Corners& corners, std::size_t overlapping);
 
-/// Correlation where both images are, and how much that tells.
+/// The correlation in the overlap, and its significance.
 struct Agreement {
   double correlation = 0;
   std::size_t samples = 0;
 
-  /// Log-likelihood ratio of a line between the intensities against none; 0 for falling lines.
-  /// Larger with more samples, so that a chance likeness of a corner does not beat a good fit of
-  /// everything.
+  /// Log-likelihood ratio of a linear relation of the intensities against none; 0 for falling
+  /// lines. It grows with the number of samples, so that a chance agreement in a corner does not
+  /// beat a good fit of the whole image.
   double evidence() const;
 };
 Agreement agreement_of(const BlurLevel& level, const Corners& corners);

@@ -11,12 +11,15 @@
 namespace surf {
 namespace {
 
-constexpr double samples_across = 46;  // of the square of the SEM's area
-constexpr double turn_miss = 1.0;      // root mean square, samples, halfway between two turns
+constexpr double samples_across = 46;  // across a square of the SEM's area
+// Root mean square displacement, in samples, halfway between two rotations.
+constexpr double turn_miss = 1.0;
 constexpr double scale_miss = 0.8;
 constexpr std::size_t peaks_of_pose = 3;
-constexpr double least_share_of_wanted = 0.85;  // a coarse place may overlap less than the fine one
-constexpr double apart = 2.5;                   // samples: candidates nearer than this are one
+// At the coarse blur, a map may overlap less than at the fine one.
+constexpr double least_share_of_wanted = 0.85;
+// Candidates closer than this, in samples, are the same.
+constexpr double apart = 2.5;
 
 struct Pose {
   double xx, xy, yx, yy;  // SEM to AFM
@@ -26,7 +29,7 @@ int steps_for(double range, double step) {
   return std::max(1, static_cast<int>(std::ceil(range / step)));
 }
 
-/// Scales in a geometric row, each in the middle of its share of the range.
+/// Scales in geometric progression, each in the middle of its part of the range.
 std::vector<double> scales_between(double least, double largest, double reach) {
   const double range = std::log(largest / least);
   const int count = steps_for(range, 2 * scale_miss / reach);
@@ -37,7 +40,7 @@ std::vector<double> scales_between(double least, double largest, double reach) {
 
 std::vector<Pose> poses_for(const BlurLevel& level, double pitch,
                             const RegistrationOptions& options) {
-  // Root mean square distances from the middle, in samples.
+  // Root mean square distances from the centre, in samples.
   const double reach_x = std::max(1.0, 2 * level.sem.half_width() / std::sqrt(12.0) / pitch);
   const double reach_y = std::max(1.0, 2 * level.sem.half_height() / std::sqrt(12.0) / pitch);
   const int turns = steps_for(2 * std::numbers::pi, 2 * turn_miss / std::hypot(reach_x, reach_y));
@@ -51,8 +54,8 @@ std::vector<Pose> poses_for(const BlurLevel& level, double pitch,
   return poses;
 }
 
-/// The SEM's image as it lies in the AFM's frame but for the shift: sampled at a pitch over the
-/// rectangle that bounds it, about its middle.
+/// The SEM's image, transformed to the AFM's frame except for the shift. It is sampled at a pitch
+/// over its bounding rectangle, relative to its centre.
 class Turned {
  public:
   Turned(const BlurLevel& level, const Pose& pose, double pitch)
@@ -82,7 +85,7 @@ class Turned {
         });
   }
 
-  /// The map, where the middle goes to `x`, `y`.
+  /// The map that takes the centre to `x`, `y`.
   Corners corners(double x, double y) const {
     const double w = level_.sem.half_width(), h = level_.sem.half_height();
     const auto at = [&](double px, double py) -> Point2 {

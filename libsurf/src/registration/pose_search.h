@@ -13,17 +13,18 @@ struct PoseSearch {
     Corners corners{};
     double evidence = 0;
   };
-  std::vector<Candidate> candidates;  ///< best first, no two alike
-  std::vector<double>
-      best_of_pose;  ///< evidence of the best shift of each turn and scale, in order of size
+  std::vector<Candidate> candidates;  ///< best first, all of them different
+  /// Evidence of the best shift for each rotation and scale, in increasing order.
+  std::vector<double> best_of_pose;
 };
 
-/// Distance of samples, SEM pixels, and standard deviation of the blur at which a start is searched
-/// for: as coarse as leaves both images enough to be known by.
+/// Distance of samples, in SEM pixels, and standard deviation of the blur for the search: as coarse
+/// as possible while both images remain recognisable.
 double search_pitch_px(const PlacedImage& sem);
 
-/// Tries turns and scales of a grid that leaves no place farther than about a sample away from one
-/// tried, and all shifts of each. `level` is blurred by `pitch_px`.
+/// Tries rotations and scales on a grid, and all shifts for each of them. The grid is so fine that
+/// some tried map places every point within about a sample of its true position. `level` is blurred
+/// by `pitch_px`.
 PoseSearch search_poses(const BlurLevel& level, double pitch_px, const RegistrationOptions& options,
                         std::size_t wanted, const Watch& watch);
 

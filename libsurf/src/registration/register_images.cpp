@@ -20,18 +20,18 @@
 namespace surf {
 namespace {
 
-// How many places are followed how far. The true one is nearly always among the first ten of the
-// search.
+// The numbers of candidates that are followed in each phase. The true one is nearly always among
+// the first ten of the search.
 constexpr std::size_t places_searched = 120, places_coarse = 24, places_fine = 8, places_sharp = 3,
                       places_repeated = 6;
 constexpr Effort coarse_effort{3, 8, 0}, fine_effort{6, 12, 0};
-constexpr Effort sharp_effort{1, 4, 10};  // noise is in the slopes: see Newton's steps
-constexpr double sharp_blur_px = 2;       // from here on every pixel counts, and costs
+constexpr Effort sharp_effort{1, 4, 10};  // the slopes are noisy: see class Newton
+constexpr double sharp_blur_px = 2;       // below it every pixel is sampled, which takes time
 constexpr double probe_blur_px = 3, widest_result_px = 2, slip_blur_px = 2;
 constexpr double probes_px[] = {-8, -4, 4, 8};
-constexpr double rival_apart_px = 1;  // nearer than this it is the same place
+constexpr double rival_apart_px = 1;  // closer maps are the same
 constexpr double chance_odds = 1000;
-constexpr double sure_correlation = 0.5;  // of images that overlap by a third and more
+constexpr double sure_correlation = 0.5;  // for images that overlap by at least a third
 constexpr double unit_score_error_of_information = 2;
 
 void require(bool good, const char* subject, const std::string& value, const char* remedy) {
@@ -81,7 +81,7 @@ void require_colours(const PlacedImage& image, const char* subject) {
     throw InvalidInput(subject, "it is of one colour", "Give an image that shows something");
 }
 
-/// Steepness, which is where it is whatever the intensities mean.
+/// The magnitude of the gradient, whose location does not depend on the meaning of the intensities.
 PlacedImage edges_of(const PlacedImage& image, double blur_px, double pixel_nm) {
   PlacedImage edges = image;
   const SmoothImage smooth(image, image.pitch_x_nm / pixel_nm, image.pitch_y_nm / pixel_nm,
@@ -141,7 +141,8 @@ class Registrar {
 
   std::vector<Trial> from_search() {
     pitch_ = search_pitch_px(sem_);
-    // Steepness stands in where intensities may be related in any way.
+    // For arbitrary relations of intensities, the magnitude of the gradient is used instead of the
+    // intensity.
     const bool steep = options_.objective == RegistrationObjective::mutual_information;
     const PlacedImage sem = steep ? edges_of(sem_, 0.7 * pitch_, frame_.pixel_nm()) : PlacedImage{};
     const PlacedImage afm = steep ? edges_of(afm_, 0.7 * pitch_, frame_.pixel_nm()) : PlacedImage{};
@@ -178,8 +179,8 @@ class Registrar {
     return trials;
   }
 
-  /// The best places that lay within the limits at last, should all leave them; not the worst ones
-  /// that are left when those that agreed have gone.
+  /// Keeps the best candidates that were last within the limits, in case all of them leave the
+  /// limits. Candidates much worse than the kept ones do not replace them.
   void hold(const std::vector<Trial>& trials, double blur) {
     if (trials.empty()) return;
     std::vector<Trial> best = trials;
@@ -193,13 +194,13 @@ class Registrar {
     for (const Trial& trial : held_) best_correlation_ = std::max(best_correlation_, trial.score);
   }
 
-  /// More than chance allows while all was coarse, or so well when it was sharper that chance is
-  /// out of question: a fine pattern is not there to be seen while all is coarse.
+  /// Whether some map agreed more than chance allows at the coarse blur, or so well at a finer blur
+  /// that chance is impossible. A fine pattern is invisible at the coarse blur.
   bool are_related() const {
     return best_coarse_evidence_ >= chance_evidence_ || best_correlation_ > sure_correlation;
   }
 
-  /// A start that was searched for is better than blurs wider than the search's would leave it.
+  /// Leaves out blurs that are wider than that of the search, because they would worsen its result.
   std::vector<double> blurs_to_use() const {
     if (options_.start) return options_.blurs_px;
     std::vector<double> blurs;
@@ -233,8 +234,8 @@ class Registrar {
     return u;
   }
 
-  /// Sharp images show what differs least from a tip's doing, blurred ones have less noise: the map
-  /// is taken from the blur where it is known best. All trials go back to it.
+  /// Chooses the blur at which the map is known best. Sharp images are least affected by the tip,
+  /// blurred ones have less noise. All candidates return to their maps at this blur.
   Uncertainty choose_blur(std::vector<Trial>& trials) {
     const Trial best = trials.front();
     std::optional<Uncertainty> least;
@@ -254,7 +255,7 @@ class Registrar {
     return *least;
   }
 
-  /// How far off the nearest place is where the scan looks like itself, SEM pixels; 0: there is
+  /// The distance to the nearest place where the scan resembles itself, in SEM pixels; 0: there is
   /// none.
   double repeat_px(const Trial& best, const Moments& moments) {
     double nearest = 0;
@@ -266,7 +267,8 @@ class Registrar {
     return nearest;
   }
 
-  /// What is clearly worse than the best is no rival, and need not be followed to the end.
+  /// Drops candidates that are clearly worse than the best: they are no rivals and need not be
+  /// followed.
   void drop_hopeless(std::vector<Trial>& trials, const BlurLevel& at, const Corners& best) const {
     if (!by_correlation()) return;
     const double here = agreement_of(at, best).correlation;
@@ -275,7 +277,7 @@ class Registrar {
         trials, [&](const Trial& t) { return here - t.score > 2 * options_.rival_sigmas * error; });
   }
 
-  /// Places to either side along the motions that are known least.
+  /// Maps displaced to either side along the least known motions.
   static std::vector<Trial> displaced(const Trial& best, const Uncertainty& u) {
     std::vector<Trial> moved;
     for (const Corners& motion : u.loosest)
@@ -287,8 +289,9 @@ class Registrar {
     return moved;
   }
 
-  /// Other optima along those motions, and where the scan looks like itself: on patterns that slide
-  /// or repeat they are as good. Which place of a lattice is meant a start that is given says.
+  /// Searches for other optima along these motions, and where the scan resembles itself: patterns
+  /// that slide or repeat fit as well there. If an initial map was given, it says which place of a
+  /// lattice is meant.
   std::vector<Trial> probe(const Trial& best, const Uncertainty& u) {
     std::vector<Trial> probes = displaced(best, u);
     if (!options_.start) {
@@ -319,8 +322,8 @@ class Registrar {
     return probes;
   }
 
-  /// Every place left the limits of the search: what slides is of no place, and those from which it
-  /// slid are as good as any.
+  /// The result if every map left the limits of the search: the images slide on each other, and the
+  /// maps from which they slid are all equally good.
   Registration slid_off(Evidence evidence) {
     blur_ = held_blur_;
     Registration r;
@@ -410,7 +413,7 @@ class Registrar {
     evidence.score_error = u.score;
     evidence.loosest_px = u.loosest_px;
     evidence.largest_stderr_px = options_.largest_stderr_px;
-    // The place that won may not be the one that led when all was coarse.
+    // The best map may not be the one that was best at the coarse blur.
     for (const Trial& trial : coarse_)
       if (distance_px(trial.corners, best.corners, moments) < 2 * pitch_)
         evidence.coarse_evidence =
@@ -421,7 +424,8 @@ class Registrar {
     return r;
   }
 
-  /// The search counts samples of the AFM's frame at its pitch; a refined place those of the SEM's.
+  /// The ratio of two numbers of samples: the search counts samples of the AFM's frame at its
+  /// pitch, a refined map counts samples of the SEM's image.
   double samples_ratio(const Trial& trial) const {
     const Corners& c = trial.corners;
     const double area = std::abs((c[2] - c[0]) * (c[5] - c[1]) - (c[3] - c[1]) * (c[4] - c[0]));
@@ -438,7 +442,7 @@ class Registrar {
   CornerFrame frame_;
   std::map<double, std::unique_ptr<BlurLevel>> levels_;
   double pitch_ = 0, chance_evidence_ = 0, best_coarse_evidence_ = 0, best_correlation_ = 0;
-  double blur_ = 0;  // of the result
+  double blur_ = 0;  // blur of the result
   std::vector<Trial> coarse_, held_;
   double held_blur_ = 0;
 };

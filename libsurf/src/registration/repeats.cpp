@@ -10,12 +10,12 @@ namespace surf {
 namespace {
 
 constexpr double alike = 0.5;        // least correlation of the AFM's image with itself
-constexpr double least_share = 0.5;  // of the part that must stay in the AFM's image
+constexpr double least_share = 0.5;  // share of the part that must stay in the AFM's image
 constexpr double blur_per_sample = 2;
-constexpr double largest_side =
-    512;  // samples: transforms of larger images cost more than they tell
+// In samples; transforms of larger images cost more than they gain.
+constexpr double largest_side = 512;
 
-/// Where in the SEM's image a place of the AFM's lies: the way back of `place`.
+/// The inverse of `place`: from places of the AFM's image to places of the SEM's image.
 class WayBack {
  public:
   explicit WayBack(const Corners& c)
@@ -51,7 +51,7 @@ std::vector<Corners> repeats_of(const BlurLevel& level, const Corners& best, std
   });
   const ShiftSearch shifts(sampled(columns, rows, value, holds), least_share, {{columns, rows}});
   std::vector<Corners> repeats;
-  // The highest peak is the part in its own place.
+  // The highest peak is the part at its own place.
   for (const ShiftPeak& peak : shifts.peaks(part, wanted + 1)) {
     if (peak.correlation < alike || std::hypot(peak.x, peak.y) < 2 || repeats.size() == wanted)
       continue;

@@ -8,10 +8,10 @@
 
 namespace surf {
 
-/// Other places that fit as well where a pattern repeats: `best` displaced to where the AFM's image
-/// looks like its own part under the SEM's, with a correlation of a half at least. The `wanted`
-/// displacements with most evidence, or fewer. Asks nothing of the SEM's intensities, so that they
-/// may mean anything.
+/// Other maps that fit as well if a pattern repeats: `best`, displaced to places where the AFM's
+/// image resembles its own part under the SEM's image, with a correlation of at least 0.5. Returns
+/// the `wanted` displacements with the most evidence, or fewer. Uses only the AFM's intensities, so
+/// the relation to the SEM's intensities does not matter.
 std::vector<Corners> repeats_of(const BlurLevel& level, const Corners& best, std::size_t wanted);
 
 }  // namespace surf

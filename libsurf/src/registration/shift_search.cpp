@@ -15,7 +15,7 @@ namespace {
 struct Free {
   void operator()(void* p) const { fftwf_free(p); }
 };
-// FFTW's own memory: every buffer is aligned alike, so that one plan fits all.
+// Memory from FFTW: all buffers have the same alignment, so one plan fits all of them.
 using Reals = std::unique_ptr<float[], Free>;
 using Spectrum = std::unique_ptr<std::complex<float>[], Free>;
 
@@ -27,7 +27,7 @@ Spectrum spectrum(std::size_t n) {
 
 fftwf_complex* raw(std::complex<float>* p) { return reinterpret_cast<fftwf_complex*>(p); }
 
-/// The next length that is quick to transform.
+/// The next length with a fast transform.
 int quick_length(int n) {
   for (int length = (n + 7) / 8 * 8;; length += 8) {
     int rest = length;
@@ -119,7 +119,7 @@ ShiftSearch::ShiftSearch(MaskedGrid resting, double least_share, const std::vect
 
 ShiftSearch::~ShiftSearch() = default;
 
-/// Shifts by nearly a whole image wrap round onto each other: they overlap too little to count.
+/// Shifts by nearly a whole image alias with each other, but overlap too little to count.
 ShiftSearch::Size ShiftSearch::size_for(int width, int height) const {
   const auto length = [&](int moving, int rest) {
     return quick_length(moving + rest -
@@ -143,7 +143,8 @@ std::vector<ShiftPeak> ShiftSearch::peaks(const MaskedGrid& moving, std::size_t 
     if (samples < least) continue;
     const double ff = sff[i] - double(sf[i]) * sf[i] / samples,
                  gg = sgg[i] - double(sg[i]) * sg[i] / samples;
-    // Values are about unit variance: below this there is next to no structure, or only rounding.
+    // Values have about unit variance. Below this limit there is hardly any structure, or only
+    // rounding.
     if (!(ff > 1e-3 * samples && gg > 1e-3 * samples)) continue;
     const double r = (sfg[i] - double(sf[i]) * sg[i] / samples) / std::sqrt(ff * gg);
     correlation.data()[i] = std::clamp(r, -1.0, 1.0);

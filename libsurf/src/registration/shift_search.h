@@ -12,12 +12,12 @@
 
 namespace surf {
 
-/// Samples and which of them there are (1 or 0); absent ones are 0 in `values`.
+/// Samples and a mask of the existing ones (1 or 0); missing samples are 0 in `values`.
 struct MaskedGrid {
   Grid<float> values, mask;
 };
 
-/// Values by column and row, about their mean and over their deviation.
+/// Samples values by column and row, minus their mean and divided by their standard deviation.
 template <class ValueAt, class HoldsAt>
 MaskedGrid sampled(int width, int height, const ValueAt& value_at, const HoldsAt& holds_at) {
   MaskedGrid grid{Grid<float>(width, height), Grid<float>(width, height)};
@@ -43,25 +43,25 @@ MaskedGrid sampled(int width, int height, const ValueAt& value_at, const HoldsAt
   return grid;
 }
 
-/// Where one image lies in another.
+/// A shift of one image over another where they agree.
 struct ShiftPeak {
-  int x = 0, y = 0;  ///< sample (0, 0) of the moving image is this sample of the resting one
+  int x = 0, y = 0;  ///< the moving image's sample (0, 0) lies at this sample of the resting image
   double correlation = 0;
-  double samples = 0;   ///< that overlap
-  double evidence = 0;  ///< as of Agreement
+  double samples = 0;   ///< number of samples that overlap
+  double evidence = 0;  ///< as in Agreement
 };
 
-/// Normalised cross-correlation of masked images at every shift at once, by Fourier transforms
+/// Normalised cross-correlation of masked images for all shifts at once, by Fourier transforms
 /// (Padfield 2012, doi:10.1109/TIP.2011.2181402).
 class ShiftSearch {
  public:
-  /// `least_share` of the smaller image must overlap. Images to be moved are at most as large as
-  /// one of `sizes`.
+  /// At least `least_share` of the smaller image must overlap. Each moving image must be no larger
+  /// than one of `sizes`.
   ShiftSearch(MaskedGrid resting, double least_share,
               const std::vector<std::pair<int, int>>& sizes);
   ~ShiftSearch();
 
-  /// The best `count` peaks, best first; fewer where there are fewer. From any thread.
+  /// The best `count` peaks, best first, or all if there are fewer. Thread-safe.
   std::vector<ShiftPeak> peaks(const MaskedGrid& moving, std::size_t count) const;
 
  private:

@@ -17,8 +17,8 @@ std::vector<double> gaussian(double sigma) {
   return taps;
 }
 
-/// Both ways along one axis; what lies outside takes no part, and is made up for by the mask's own
-/// blur.
+/// Convolves along one axis with symmetric taps. Samples outside the image do not contribute; the
+/// blurred mask corrects for them.
 Grid<double> convolved(const Grid<double>& in, const std::vector<double>& taps, bool along_x) {
   const int w = in.width(), h = in.height(), reach = static_cast<int>(taps.size()) - 1;
   if (reach == 0) return in;
@@ -43,8 +43,7 @@ Grid<double> convolved(const Grid<double>& in, const std::vector<double>& taps, 
   return out;
 }
 
-/// A row of samples becomes the coefficients of the spline that goes through them, mirrored at its
-/// ends.
+/// Replaces a row of samples by the coefficients of the spline through them, mirrored at its ends.
 void to_coefficients(double* c, int n, std::ptrdiff_t stride) {
   const double pole = std::sqrt(3.0) - 2;
   if (n < 2) return;
@@ -52,7 +51,7 @@ void to_coefficients(double* c, int n, std::ptrdiff_t stride) {
   const int period = 2 * n - 2;
   double first = 0, power = 1;
   for (int i = 0; i < std::min(period, 60); ++i, power *= pole)
-    first += power * at(i < n ? i : period - i);  // beyond is below the last digit
+    first += power * at(i < n ? i : period - i);  // the remaining terms are below the last digit
   first /= 1 - std::pow(pole, period);
   const double gain = 6;
   at(0) = gain * first;
@@ -83,7 +82,7 @@ Grid<double> blurred(const PlacedImage& image, double blur_x, double blur_y) {
       if (image.is_valid(x, y)) sum += values(x, y), count += 1;
       else values(x, y) = weight(x, y) = 0;
     }
-  // About the mean, so that blurs of large offsets lose no digits.
+  // Relative to the mean, so that large offsets lose no digits.
   const double mean = count > 0 ? sum / count : 0;
   for (std::size_t i = 0; i < values.size(); ++i) values.data()[i] -= mean * weight.data()[i];
   const std::vector<double> across = gaussian(blur_x), up = gaussian(blur_y);
@@ -102,7 +101,7 @@ SmoothImage::SmoothImage(const PlacedImage& image, double step_x, double step_y,
   Grid<double> c = samples_;
   for (int y = 0; y < h; ++y) to_coefficients(&c(0, y), w, 1);
   for (int x = 0; x < w; ++x) to_coefficients(&c(x, 0), h, w);
-  // The mirror at the ends: the coefficient before the first is the one after it.
+  // Mirrors at the ends: the coefficient before the first equals the one after it.
   coefficients_ = Grid<double>(w + 2, h + 2);
   for (int y = -1; y <= h; ++y)
     for (int x = -1; x <= w; ++x)

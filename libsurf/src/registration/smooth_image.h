@@ -9,12 +9,12 @@
 
 namespace surf {
 
-/// An image after a Gaussian blur of `blur_x`, `blur_y` samples (0: none), what is not valid taking
-/// no part: values where anything valid is near, their mean elsewhere.
+/// An image after a Gaussian blur of `blur_x`, `blur_y` samples (0: none). Invalid samples do not
+/// contribute. Samples without valid samples nearby get the mean.
 Grid<double> blurred(const PlacedImage& image, double blur_x, double blur_y);
 
-/// An image between its samples: a cubic spline, whose slopes have no kinks that would hold an
-/// optimum at the samples (Unser 1999, doi:10.1109/79.799930).
+/// A cubic spline through the samples of an image (Unser 1999, doi:10.1109/79.799930). Its slopes
+/// have no kinks, which would attract optima to the samples.
 class SmoothImage {
  public:
   struct Value {
@@ -22,9 +22,9 @@ class SmoothImage {
   };
 
   SmoothImage() = default;
-  /// Places in x and y are (column - middle) * step; blurs in the unit of `step`. Samples whose
-  /// blur reaches beyond the image count too, though what is left of it there lies a little farther
-  /// inside: the rim holds turns and scales best, and errors are larger without it.
+  /// Places in x and y are (column - middle) * step; blurs are in the unit of `step`. Samples whose
+  /// blur reaches beyond the image count too, although their blurred values are shifted a little
+  /// inward. The rim determines rotations and scales best, and errors are larger without it.
   SmoothImage(const PlacedImage& image, double step_x, double step_y, double blur);
 
   /// Whether the place lies between valid samples.
@@ -35,7 +35,8 @@ class SmoothImage {
     return safe_.empty() || safe_(static_cast<int>(u), static_cast<int>(v)) != 0;
   }
 
-  /// At a place; beyond the image as at its edge. Slopes per unit of x and y.
+  /// Value and slopes at a place, per unit of x and y. Beyond the image the values of its edge are
+  /// used.
   Value at(double x, double y) const;
   double value(double x, double y) const;
 
@@ -49,8 +50,8 @@ class SmoothImage {
  private:
   double step_x_ = 1, step_y_ = 1, middle_x_ = 0, middle_y_ = 0;
   Grid<double> samples_;
-  Grid<double> coefficients_;  // one more on each side
-  Mask valid_, safe_;          // samples, and cells between four valid ones; empty: all
+  Grid<double> coefficients_;  // with one more sample on each side
+  Mask valid_, safe_;          // valid samples, and cells between four valid ones; empty: all
 };
 
 }  // namespace surf

@@ -11,7 +11,7 @@
 namespace surf {
 namespace {
 
-// The true map may lie at a limit, and an estimate of it beyond.
+// The true map may lie at a limit, and its estimate beyond.
 constexpr double scale_room = 1.03, shear_room = 0.015, overlap_room = 0.9;
 
 void refine_one(Trial& trial, const BlurLevel& level, RegistrationObjective objective,
@@ -28,7 +28,7 @@ void refine_one(Trial& trial, const BlurLevel& level, RegistrationObjective obje
     trial.settled = fit.settled;
     step.evaluations = fit.evaluations;
   } else {
-    Watch cancel;  // progress is told by whoever hands out the trials
+    Watch cancel;  // the caller reports the progress
     cancel.cancel = options.watch.cancel;
     const InformationFit fit =
         fit_information(level, options.mutual_information, trial.corners, cancel);

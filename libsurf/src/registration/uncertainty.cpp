@@ -14,11 +14,12 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Columns = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
 constexpr int fewest_blocks = 40;
-constexpr double unknown_px = 1e3;  // standard error of a motion that nothing holds
+constexpr double unknown_px = 1e3;  // standard error of an undetermined motion
 constexpr int farthest_lag = 24;
-constexpr double edge_block_px = 16;  // a wall, but not both walls of a line
+constexpr double edge_block_px = 16;  // large enough for one wall of a line, not for both
 
-/// Integral of the residuals' autocorrelation along rows and columns, samples, up to where it ends.
+/// The integral of the residuals' autocorrelation along rows and columns, in samples, up to the lag
+/// where it vanishes.
 double correlation_length(const BlurLevel& level, const Correlation& correlation,
                           const Eigen::VectorXd& residual) {
   std::map<std::pair<int, int>, double> at;
@@ -51,7 +52,7 @@ double correlation_length(const BlurLevel& level, const Correlation& correlation
   return longest;
 }
 
-/// Which block each sample lies in, numbered from 0.
+/// The block of each sample, numbered from 0.
 struct Blocks {
   std::vector<std::size_t> of_sample;
   std::size_t count = 0;
@@ -80,8 +81,8 @@ Blocks blocks_for(const BlurLevel& level, const Correlation& correlation, double
   return blocks_of(level, correlation, side_for(length));
 }
 
-/// Variance of a sum of parts whose blocks are independent, with what the `spent` numbers took of
-/// it.
+/// The variance of a sum of parts whose blocks are independent, corrected for the `spent` degrees
+/// of freedom.
 Eigen::MatrixXd variance_of(const Blocks& blocks, const Eigen::MatrixXd& parts, double spent) {
   Eigen::MatrixXd sums =
       Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(blocks.count), parts.cols());
@@ -103,7 +104,8 @@ double score_error(const Blocks& blocks, const Correlation& correlation,
   return std::sqrt(variance_of(blocks, parts, 1)(0, 0));
 }
 
-/// From the derivative of the sum of pulls and its variance, by the corners.
+/// Computes the covariance from the derivative of the sum of pulls by the corners, and from the
+/// variance of the sum.
 void fill(Uncertainty& u, const Matrix6& h, const Matrix6& pull_variance, const Moments& moments) {
   // Motions of unit root mean square over the overlap are unit vectors of w = L^T c.
   Matrix6 metric = 1e-9 * Matrix6::Identity();
@@ -119,7 +121,7 @@ void fill(Uncertainty& u, const Matrix6& h, const Matrix6& pull_variance, const 
   const Matrix6 axes = from_motion * eigen.eigenvectors();
   const Matrix6 pull = axes.transpose() * pull_variance * axes;
   const Vector6 stiffness = eigen.eigenvalues();
-  // What curves no more than rounding, or the wrong way, is held by nothing.
+  // A direction whose curvature is negative or within rounding is undetermined.
   const double floor = std::max(1e-9 * stiffness.cwiseAbs().maxCoeff(), 1e-15);
   Matrix6 cov;
   for (Eigen::Index i = 0; i < 6; ++i)
@@ -141,8 +143,9 @@ void fill(Uncertainty& u, const Matrix6& h, const Matrix6& pull_variance, const 
       u.covariance[static_cast<std::size_t>(6 * i + j)] = of_corners(i, j);
 }
 
-/// Variance of the sum of pulls: each block's as if the map had been found without it, or blocks
-/// that hold it alone, the few ends of lines, would seem to agree with themselves.
+/// The variance of the sum of pulls, with each block's pull as if the map had been fitted without
+/// that block. Otherwise a block that alone determines a motion, such as the end of a line, would
+/// seem to agree with itself.
 Matrix6 jackknifed(const Blocks& blocks, const Columns& jacobian, const Eigen::VectorXd& residual) {
   std::vector<Vector6> pulls(blocks.count, Vector6::Zero());
   std::vector<Matrix6> parts(blocks.count, Matrix6::Zero());
@@ -164,8 +167,9 @@ Matrix6 jackknifed(const Blocks& blocks, const Columns& jacobian, const Eigen::V
   return variance;
 }
 
-/// Slopes of the AFM's image over its norm and times the correlation, so that a motion of the place
-/// changes the residual by minus them: the Jacobian's columns of three corners that move together.
+/// The slopes of the AFM's image, divided by its norm and multiplied by the correlation: a
+/// displacement changes the residual by minus these slopes. They are the sums of the Jacobian's
+/// columns over the three corners, which then move together.
 Eigen::Matrix<double, Eigen::Dynamic, 2> along_axes(const Columns& jacobian) {
   Eigen::Matrix<double, Eigen::Dynamic, 2> g(jacobian.rows(), 2);
   g.col(0) = jacobian.col(0) + jacobian.col(2) + jacobian.col(4);
@@ -173,8 +177,8 @@ Eigen::Matrix<double, Eigen::Dynamic, 2> along_axes(const Columns& jacobian) {
   return g;
 }
 
-/// Variance of the sum of pulls where each block is displaced as a whole, on its own, by `slip_px`
-/// along each axis.
+/// The variance of the sum of pulls if each block is displaced independently, as a whole, by
+/// `slip_px` along each axis.
 Matrix6 displaced(const Blocks& blocks, const Columns& jacobian, double slip_px) {
   using Couple = Eigen::Matrix<double, 6, 2>;
   const Eigen::Matrix<double, Eigen::Dynamic, 2> g = along_axes(jacobian);

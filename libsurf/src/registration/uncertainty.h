@@ -5,51 +5,55 @@
 
 namespace surf {
 
-/// How far the largest correlation is known. The corners solve "sum of each sample's pull = 0";
-/// their covariance is H^-1 V H^-1 with H the derivative of the sum (by central differences of the
-/// exact gradient, so that noise in the AFM's image is not taken for structure) and V the pull's
-/// variance, from sums over blocks as large as the residuals are correlated, each as if left out of
-/// the fit: the "sandwich" of M-estimates (blocks: Conley 1999, doi:10.1016/S0304-4076(98)00084-0)
-/// with the jackknife's weights.
+/// The uncertainty of the map with the largest correlation. The corners solve "sum of each sample's
+/// pull = 0" (the pull is a sample's gradient). Their covariance is H^-1 V H^-1. H is the
+/// derivative of the sum, by central differences of the exact gradient, so that noise in the AFM's
+/// image is not mistaken for structure. V is the variance of the sum, from sums over blocks as
+/// large as the correlation of the residuals, each as if left out of the fit: the "sandwich"
+/// estimate for M-estimates (blocks: Conley 1999, doi:10.1016/S0304-4076(98)00084-0) with the
+/// jackknife's weights.
 struct Uncertainty {
-  std::array<double, 36> covariance{};  ///< of the corners, SEM pixels squared
-  double place_px = 0;  ///< root mean square over the overlap of the place's standard error
-  double loosest_px =
-      0;  ///< standard error along the motion that is known least, of unit root mean square
+  std::array<double, 36> covariance{};  ///< covariance of the corners, SEM pixels squared
+  /// Standard error of the mapped position, root mean square over the overlap.
+  double place_px = 0;
+  /// Standard error along the least known motion, of unit root mean square.
+  double loosest_px = 0;
   std::array<Corners, 2> loosest{};  ///< the two least known motions, of unit root mean square
   double score = 0;                  ///< standard error of the correlation
   double block_px = 1;               ///< side of the blocks
 };
 
-/// How far edges lie from where the other image has them once the images are laid on each other:
-/// what a tip does to walls and ends, which no amount of pixels averages away.
+/// How far edges of one image lie from the edges of the other after alignment. A tip displaces
+/// walls and ends like this, and more pixels do not average it away.
 struct EdgeSlip {
-  double px = 0;  ///< root mean square along each axis, of places weighed by how well they show it
-  int reach_px = 0;  ///< side of blocks that are displaced on their own
+  /// Root mean square along each axis; places weigh more the better they show the displacement.
+  double px = 0;
+  int reach_px = 0;  ///< side of the blocks that are displaced independently
 };
 
-/// From blocks a few pixels wide at a level that is blurred enough for noise not to matter.
+/// Measures the slip in blocks a few pixels wide. The level must be blurred so much that noise does
+/// not matter.
 EdgeSlip edge_slip(const BlurLevel& level, const Corners& corners);
 
-/// At an optimum; `corners` are what `fit_correlation` gave. V is the larger one of that from the
-/// residuals and that of blocks displaced by the slip: where few edges hold a motion, they agree
-/// with a map that was fitted to them, and only what edges do elsewhere tells how far to trust
-/// them.
+/// The uncertainty at an optimum; `corners` come from `fit_correlation`. V is the larger one of two
+/// variances: from the residuals, and from blocks displaced by the slip. If only a few edges
+/// determine a motion, they agree with the map because it was fitted to them; then only the slip of
+/// other edges shows how reliable they are.
 Uncertainty uncertainty_of(const BlurLevel& level, const Corners& corners, const EdgeSlip& slip);
 
-/// The same of an estimate by likelihood: `information` is the negative second derivative of its
-/// logarithm. `score` is left 0.
+/// The uncertainty of a maximum-likelihood estimate. `information` is the negative second
+/// derivative of the log-likelihood. `score` is left 0.
 Uncertainty uncertainty_from(const std::array<double, 36>& information, const BlurLevel& level,
                              const Corners& corners);
 
-/// How many samples are as good as one, the residuals being correlated: 1 for white ones, less
-/// else.
+/// The number of independent samples per sample, given the correlation of the residuals: 1 for
+/// white residuals, otherwise less.
 double independent_share(const BlurLevel& level, const Corners& corners);
 
-/// The standard error of a correlation alone.
+/// The standard error of a correlation.
 double score_error(const BlurLevel& level, const Corners& corners);
 
-/// Covariance of xx xy x0 yx yy y0 from that of the corners.
+/// The covariance of xx xy x0 yx yy y0, from that of the corners.
 std::array<double, 36> affine_covariance(const CornerFrame& frame,
                                          const std::array<double, 36>& corners);
 

@@ -10,7 +10,7 @@ namespace surf {
 namespace {
 
 constexpr double sliding_px = 1;
-constexpr double least_sigmas = 6;  // of a score from a start that was given
+constexpr double least_sigmas = 6;  // for the score with a given initial map
 
 }  // namespace
 
@@ -19,7 +19,7 @@ double chance_bound(const std::vector<double>& sorted, double odds) {
   const auto at = [&](double share) {
     return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
   };
-  // Quantiles of the standard law: -log(-log p).
+  // Quantiles of the standard Gumbel distribution: -log(-log p).
   const double ln2 = std::numbers::ln2;
   const double half = -std::log(ln2), quarter = -std::log(2 * ln2);
   const double scale = (at(0.5) - at(0.25)) / (half - quarter), place = at(0.5) - half * scale;

@@ -81,7 +81,7 @@ void from_json(const Json& j, ReconstructionPoint& p) {
   p.ended = j.at("ended");
   for (const Json& s : j.at("steps"))
     p.steps.push_back({s.at("sigma_px"), s.at("run_s"), s.at("rms_nm")});
-  p.steps.at(0);  // a point has one
+  p.steps.at(0);  // every point has a step
 }
 
 std::string registration_csv(const ChainChartSummary& summary) {

@@ -8,7 +8,7 @@
 
 namespace surf::workflow {
 
-// As points are kept. The ways back throw nlohmann's exceptions.
+// The format of stored points. `from_json` throws nlohmann's exceptions.
 nlohmann::ordered_json to_json(const RegistrationPoint& point);
 nlohmann::ordered_json to_json(const ReconstructionPoint& point);
 void from_json(const nlohmann::ordered_json& json, RegistrationPoint& point);

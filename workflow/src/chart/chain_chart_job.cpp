@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int usual_draws = 10, quick_draws = 3;
-constexpr double prepared_weight = 1;  // of the progress: a point's
+constexpr double prepared_weight = 1;  // weight of the preparation in the progress; a point has 1
 
 ChainChartJob complete(const ChainChartJob& asked) {
   check_parameters(asked);
@@ -54,7 +54,7 @@ ChainChartJob complete(const ChainChartJob& asked) {
   return job;
 }
 
-// Of all that figures depend on: a point of another job counts no more.
+// Identifies everything that the results depend on, so that points of another job do not count.
 std::string identity_of(const ChainSetting& setting) {
   const ChainChartJob& job = setting.job;
   Identity id{{"semsurf", version()},
@@ -98,7 +98,7 @@ class Runner {
     return watch;
   }
 
-  /// False when cancelled. What cannot be had of this sample is left out.
+  /// Returns false if cancelled. A method that is impossible with this sample is left out.
   template <class Point>
   bool run(const ChainMethod<Point>& method, const std::function<void(const Point&)>& tell,
            std::vector<Point>& points) {
@@ -111,7 +111,7 @@ class Runner {
         ++summary_.found;
         advance();
         return true;
-      } catch (const nlohmann::json::exception&) {  // damaged: made again
+      } catch (const nlohmann::json::exception&) {  // damaged: the point is made again
       } catch (const std::out_of_range&) {
       }
     }

@@ -13,7 +13,7 @@
 namespace surf::workflow {
 namespace {
 
-// A log axis shows nothing at 0.
+// A logarithmic axis cannot show 0.
 constexpr double least_s = 1e-5, least_nm = 1e-4;
 
 struct Look {
@@ -52,7 +52,8 @@ std::vector<std::string> families_of(const auto& points) {
   return out;
 }
 
-// A way that never arrives has a range of 0; one without a start has none, and a line of its time.
+// A way that never succeeds has a range of 0. A way that needs no start has no range, and gets a
+// line at its time.
 io::PlotPanel range_panel(const ChainChartSummary& summary,
                           std::optional<double> CaptureRange::*range, bool CaptureRange::*open,
                           double RegistrationPoint::*offset, const char* unit) {
@@ -116,8 +117,9 @@ io::PlotPanel error_panel(const ChainChartSummary& summary, bool relative) {
     io::PlotSeries series = series_of(
         p.family, p.steps.size() > 1 ? io::PlotStyle::line_points : io::PlotStyle::points);
     if (std::ranges::any_of(panel.series,
+                            // One legend entry for all settings.
                             [&](const io::PlotSeries& s) { return s.name == series.name; }))
-      series.name.clear();  // one line of the legend for all settings
+      series.name.clear();
     for (const ReconstructionStep& s : p.steps) {
       series.x.push_back(std::max(least_s, p.preparation_s + s.run_s));
       series.y.push_back(std::max(least_nm, s.rms_nm) / unit);
@@ -165,7 +167,7 @@ io::Plot registration_plot(const ChainChartSummary& summary) {
                        &RegistrationPoint::offset_deg, "degrees"),
            success_panel(summary, &RegistrationPoint::offset_deg, "degrees")})
     if (drawn(panel)) plot.panels.push_back(std::move(panel));
-  if (plot.panels.empty()) {  // the search alone: its success over its time
+  if (plot.panels.empty()) {  // only the search was run: show its success against its time
     io::PlotPanel panel;
     panel.x = {"time of one registration (s)", true, {}};
     panel.y = {fmt::format("verified and within {:g} px (%)", right_px), false,

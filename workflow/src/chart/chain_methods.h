@@ -13,16 +13,17 @@
 
 namespace surf::workflow {
 
-/// What every method of a chart of the chain is told.
+/// The input of every method in a chart of the chain.
 struct ChainSetting {
-  const ChainChartJob& job;  ///< complete: `draws` is there
+  const ChainChartJob& job;  ///< complete: `draws` is set
   SampleTruth sample;
   StoredModel model;
-  HeightField eroded;     ///< the scan with the true tip taken off
-  PlacedImage simulated;  ///< the SEM image predicted of it
+  HeightField eroded;     ///< the scan eroded by the true tip
+  PlacedImage simulated;  ///< SEM image predicted from it
 };
 
-/// One point before it is there: what names it, and how the rest is found. Throws Interrupted.
+/// A point that is not computed yet: its name, and a function that fills in the rest. Throws
+/// Interrupted.
 template <class Point>
 struct ChainMethod {
   Point point;
@@ -35,12 +36,13 @@ std::vector<ChainMethod<ReconstructionPoint>> list_reconstructions(const ChainCh
 /// Whether the job asks for a family.
 bool wants(const ChainChartJob& job, const std::string& family);
 
-/// Root mean square over the overlap of where the pixels of an SEM image are put less where they
-/// belong, SEM pixels. Every third along x and y is looked at.
+/// Root mean square error, in SEM pixels, of the mapped places of an SEM image's pixels over the
+/// overlap. Every third pixel along x and y is used.
 double registration_error_px(const Affine& truth, const Affine& found, const PlacedImage& sem,
                              const PlacedImage& simulated);
 
-/// What a part of the image registers like that is begun off.
+/// The input of one registration: a part of the SEM image, and an initial guess or landmarks that
+/// are off by the given amount.
 struct RegistrationDraw {
   PlacedImage sem;
   Affine start;

@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of the reference's seed: its libraries are then no other point's.
+// Offset of the reference's seed, so that it shares no library with a point.
 constexpr std::uint64_t other_seed = 1'000'003;
 
 ChartJob complete(const ChartJob& asked) {
@@ -75,8 +75,8 @@ std::vector<double> accuracies_of(const ChartJob& job) {
   return out;
 }
 
-// So fine that libraries of cascades take too much memory: several images with libraries of their
-// own, their mean.
+// Below this accuracy libraries of cascades would take too much memory. The reference is then the
+// mean of several images with separate libraries.
 constexpr double finest_at_once = 0.007;
 
 double floor_of_scene(const ChartJob& job) {
@@ -127,7 +127,7 @@ Image mean_of(const std::vector<SimulateJob>& parts) {
   return mean;
 }
 
-// Of all that errors depend on: a point of another job counts no more.
+// Identifies everything that errors depend on, so that points of another job do not count.
 std::string identity(const ChartJob& job, const std::vector<SimulateJob>& reference,
                      const std::vector<double>& accuracies) {
   Identity id{
@@ -178,18 +178,19 @@ fs::path point_file(const ChartJob& job, const ChartMethod& method) {
   return job.folder / "points" / (method.id + ".json");
 }
 
-// Before any point is timed. Without a team they come with the first point that needs them.
+// Makes the training images of a team before any point is timed. Without a team the first point
+// that needs them makes them.
 ManyDone make_images_for(const ChartSetting& setting, const std::vector<ChartMethod>& methods,
                          const std::string& id, const Watch& watch, Team& team) {
   std::string wanted = "no";
-  for (const ChartMethod& method : methods)  // whoever leads has them
+  for (const ChartMethod& method : methods)  // the leader has the stored points
     if (method.needs_images && !read_point(point_file(setting.job, method), id)) wanted = "yes";
   team.broadcast(wanted);
   return wanted == "yes" ? make_images(setting, watch, &team) : ManyDone{};
 }
 
-// Of all points and before them; the reference counts as much as all together: it takes the most
-// electrons.
+// The progress over all points. The reference counts as much as all points together, because it
+// takes the most electrons.
 class Course {
  public:
   Course(const Reporter& reporter, double points) : reporter_(reporter), points_(points) {}
@@ -214,7 +215,7 @@ class Course {
 ManyDone make_reference(const ChartJob& job, const std::vector<SimulateJob>& parts,
                         const mc::Scan& scan, const Reporter& reporter, Course& course,
                         Team* team) {
-  std::string letters;  // whoever leads has looked
+  std::string letters;  // the leader decides for all
   for (const SimulateJob& part : parts) letters += leads(team) && is_finished(part) ? '+' : '-';
   if (team) team->broadcast(letters);
   std::vector<const SimulateJob*> missing;
@@ -243,7 +244,7 @@ ManyDone make_reference(const ChartJob& job, const std::vector<SimulateJob>& par
   return done;
 }
 
-// Runs what is not there yet.
+// Runs the missing points.
 void make_points(const ChartSetting& setting, const std::vector<ChartMethod>& methods,
                  const std::string& id, const Reporter& reporter, const PointCallback& on_point,
                  Course& course, ChartSummary& summary) {
@@ -329,7 +330,7 @@ ChartSummary run(const ChartJob& asked, const Reporter& reporter, const PointCal
   ComparedPixels pixels;
   std::vector<SimulateJob> parts;
   std::string id;
-  std::vector<ChartMethod> methods;  // where the team is led
+  std::vector<ChartMethod> methods;  // on the leader
   together(team, [&] {
     setting.scan = resolve_scan(job.scene.scan, mc::extent(job.scene.specimen), job.scene.beam);
     pixels = choose_pixels(setting.scan, job.compared_pixels);

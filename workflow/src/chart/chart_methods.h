@@ -12,39 +12,39 @@
 
 namespace surf::workflow {
 
-/// What every method of a chart is told.
+/// The input of every method in a chart.
 struct ChartSetting {
   const ChartJob& job;
   mc::Scan scan;
-  const Reference* reference = nullptr;  ///< not there while methods are only listed
+  const Reference* reference = nullptr;  ///< null while methods are only listed
   std::vector<double> accuracies;        ///< coarsest first
 };
 
-/// One point before it is there.
+/// A point that is not computed yet.
 struct ChartMethod {
   std::string id, family, setting;
   bool is_default = false;
   /// Fills in the point's times, primaries, channels and targets. Throws Interrupted.
   std::function<void(const ChartSetting&, const Watch&, ChartPoint&)> run;
-  bool needs_images = false;  ///< those of make_images
+  bool needs_images = false;  ///< it needs the images of make_images
 };
 
 struct ChartMethods {
   std::vector<ChartMethod> methods;
-  std::vector<std::string> left_out;  ///< sentences
+  std::vector<std::string> left_out;  ///< in sentences
 };
 
-/// By Monte Carlo: direct and replayed electrons, wanted accuracies, simplified specimens.
+/// Methods by Monte Carlo: direct and replayed electrons, wanted accuracies, simplified specimens.
 ChartMethods list_simulations(const ChartSetting& setting);
 
 /// The id of the simulation that reaches an accuracy in this way.
 std::string id_of_accuracy(mc::Method method, bool planar_control, double accuracy);
 
-/// By the models that `train` makes, where they hold for the scene.
+/// Methods by the models that `train` makes, if they apply to the scene.
 ChartMethods list_models(const ChartSetting& setting);
 
-/// The images that models learn from, once for all of them. Keeps how long they took: each is
-/// simulated by one process, so that a team's times mean the same. Throws Interrupted, on all of a
+/// Makes the training images, once for all models. Stores the time that they took: one process
+/// simulates each, so that a team's times mean the same. Throws Interrupted, on all members of a
 /// team.
 ManyDone make_images(const ChartSetting& setting, const Watch& watch, Team* team);
 

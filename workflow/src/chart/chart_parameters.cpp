@@ -8,7 +8,7 @@
 namespace surf::workflow {
 namespace {
 
-/// What charts of scenes and of samples both have.
+/// The parameters common to charts of scenes and of samples.
 template <class Job>
 void describe_common(ParameterVisitor& visit, Job& job) {
   describe_folder(visit, job.folder, "Folder for the chart and what it is made from");

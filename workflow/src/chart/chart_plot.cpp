@@ -13,7 +13,7 @@
 namespace surf::workflow {
 namespace {
 
-// A log axis shows nothing at 0, which is what a method that is exact would have.
+// A logarithmic axis cannot show 0, the error of an exact method.
 constexpr double least_error = 1e-6, least_s = 1e-5;
 
 struct Place {
@@ -29,8 +29,8 @@ std::vector<Place> places(const ChartSummary& summary, std::size_t channel, bool
   return out;
 }
 
-// One look for each family; models before the filter bank share one. Dashed: as many electrons as
-// an accuracy takes.
+// Each family has its own look; models older than the filter bank share one. A dashed line means
+// that the number of electrons follows from an accuracy.
 struct Look {
   const char* legend;
   int color;
@@ -113,8 +113,8 @@ io::Plot chart_plot(const ChartJob& job, const ChartSummary& summary) {
   for (const bool prepared : {false, true})
     for (std::size_t c = 0; c < channels; ++c) {
       plot.panels.push_back(panel(summary, c, prepared));
-      plot.panels.back().legend =
-          plot.panels.size() == channels;  // beside the last of the first row
+      // Beside the last panel of the first row.
+      plot.panels.back().legend = plot.panels.size() == channels;
     }
   plot.columns = static_cast<int>(channels);
   plot.width_px = 1800;

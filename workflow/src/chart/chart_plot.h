@@ -6,8 +6,8 @@
 
 namespace surf::workflow {
 
-/// Time against error, SE and BSE: above with all that it takes from nothing, below with scene,
-/// library and model made before.
+/// Time against error, SE and BSE: the upper panels with the preparation, the lower ones with
+/// scene, library and model already made.
 io::Plot chart_plot(const ChartJob& job, const ChartSummary& summary);
 
 }  // namespace surf::workflow

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double most_rms = 1.1, most_short = 0.02, missed_by = 1.1;
 
-// How many of every `step`-th pixel fit so that as much is left on both sides, and the first of
-// them.
+// The number of pixels, taking every `step`-th, that fits with equal margins on both sides, and the
+// first of them.
 std::pair<int, int> fit(int pixels, int step) {
   int count = (pixels - 1) / step + 1;
   if ((pixels - 1 - step * (count - 1)) % 2 != 0) --count;
@@ -23,7 +23,7 @@ std::pair<int, int> fit(int pixels, int step) {
 }  // namespace
 
 ComparedPixels choose_pixels(const mc::Scan& scan, int about) {
-  // Odd: with an even step no such pixels of an even number lie about the middle.
+  // Odd steps only: with an even step and an even number of pixels the margins cannot be equal.
   ComparedPixels best;
   for (int step = 1;; step += 2) {
     const auto [width, first_x] = fit(scan.width, step);

@@ -11,25 +11,25 @@
 
 namespace surf::workflow {
 
-/// Pixels of a scan that lie evenly spread and symmetrically about its middle, so that they are a
-/// scan of their own, in the same places: every `step`-th along x and y from `first_x`, `first_y`.
+/// Pixels of a scan that are evenly spread and symmetric about its middle, so that they form a scan
+/// of their own at the same places: every `step`-th along x and y from `first_x`, `first_y`.
 struct ComparedPixels {
   int step = 1, first_x = 0, first_y = 0, width = 0, height = 0;
 };
 
-/// About so many of them.
+/// Chooses approximately `about` pixels.
 ComparedPixels choose_pixels(const mc::Scan& scan, int about);
 
-/// What has to be asked for to scan them alone.
+/// The request for a scan of these pixels alone.
 mc::ScanRequest request_for(const ComparedPixels& pixels, const mc::Scan& scan);
 
-/// One channel at the compared pixels that the reference sees.
+/// One channel at the compared pixels where the reference is seen.
 struct ComparedChannel {
   std::string name;
-  std::vector<double> values, standard_errors;  ///< the latter may be empty
+  std::vector<double> values, standard_errors;  ///< standard_errors may be empty
 };
 
-/// The reference, as its file holds it.
+/// The reference, as stored in its file.
 struct Reference {
   ComparedPixels pixels;
   std::vector<bool> seen;                 ///< whether the beam meets the specimen
@@ -37,11 +37,12 @@ struct Reference {
   double accuracy_floor = 0;
 };
 
-/// From the image of the compared pixels alone. Throws InvalidInput if no pixel sees anything.
+/// Reads the reference from the image of the compared pixels. Throws InvalidInput if no pixel sees
+/// anything.
 Reference read_reference(const Image& image, const ComparedPixels& pixels, double accuracy_floor);
 
-/// Takes from an image of the whole scan what is compared. `value(channel, x, y)` and, unless null,
-/// `error` alike.
+/// Takes the compared pixels from an image of the whole scan: `value(channel, x, y)` gives a value,
+/// and `error`, unless null, its standard error.
 template <class Value, class Error>
 std::vector<ComparedChannel> take_compared(const Reference& reference, const Value& value,
                                            const Error* error) {
@@ -63,7 +64,7 @@ std::vector<ComparedChannel> take_compared(const Reference& reference, const Val
   return out;
 }
 
-/// Fills in a point's errors and how they compare with each accuracy.
+/// Fills in a point's errors and compares them with each accuracy.
 void judge(const Reference& reference, const std::vector<ComparedChannel>& channels,
            const std::vector<double>& accuracies, ChartPoint& point);
 

@@ -29,7 +29,7 @@ std::optional<Json> read_json(const std::filesystem::path& path) {
   } catch (const Json::exception&) {
   } catch (const FileError&) {
   }
-  return std::nullopt;  // damaged: made again
+  return std::nullopt;  // damaged: the point is made again
 }
 
 }  // namespace surf::workflow

@@ -8,15 +8,15 @@
 
 namespace surf::workflow {
 
-/// Keeps a chart's point for the same job started again. `identity` says of which job it is.
+/// Stores a chart's point for the same job started again. `identity` identifies the job.
 void keep_point(const std::filesystem::path& path, const std::string& identity,
                 const nlohmann::ordered_json& point);
 
-/// The point, if the file is there, whole and of this job.
+/// Reads a point, if the file exists, is complete and belongs to this job.
 std::optional<nlohmann::ordered_json> kept_point(const std::filesystem::path& path,
                                                  const std::string& identity);
 
-/// What a file holds; nothing where there is none or it is damaged.
+/// Reads a JSON file; nothing if it is missing or damaged.
 std::optional<nlohmann::ordered_json> read_json(const std::filesystem::path& path);
 
 }  // namespace surf::workflow

@@ -25,9 +25,9 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr int repeats = 3;  // of what is over sooner than this:
+constexpr int repeats = 3;  // predictions shorter than `short_s` are repeated
 constexpr double short_s = 0.5;
-// Models look past the image's edge: so far, unless that is more than so many pixels.
+// Models see beyond the image's edge: this many ranges, but at most `most_margin_px` pixels.
 constexpr double margin_ranges = 2;
 constexpr int most_margin_px = 48;
 constexpr int quick_surfaces = 3, quick_surface_px = 32, quick_iterations = 100;
@@ -37,7 +37,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// Why fast models do not hold for the scene, if they do not.
+// Says why fast models do not apply to the scene, if so.
 std::optional<std::string> obstacle(const ChartSetting& setting) {
   const io::SceneFile& s = setting.job.scene;
   if (s.beam.tilt_deg != 0 || s.beam.convergence_deg != 0 || s.beam.working_distance_nm != 0)
@@ -65,10 +65,10 @@ const mc::Material& material_of(const io::SceneFile& scene) {
 
 struct Heights {
   HeightField field;
-  int margin = 0;  // pixels on each side that are not in the image
+  int margin = 0;  // pixels on each side outside the image
 };
 
-// What the beam sees from above, past the image's edge.
+// The heights that the beam sees from above, including a margin beyond the image's edge.
 Heights heights_of(const ChartSetting& setting) {
   const io::SceneFile& s = setting.job.scene;
   const double range_px = margin_ranges *
@@ -82,7 +82,7 @@ Heights heights_of(const ChartSetting& setting) {
     const Image view =
         mc::surface_view(mc::Scene(s.specimen, s.beam, scan, s.physics), setting.job.threads);
     const auto& valid = view.find("valid")->values.data();
-    // The specimen may end with the image.
+    // The specimen may end at the image's edge.
     if (margin > 0 && std::any_of(valid.begin(), valid.end(), [](float v) { return v < 0.5f; }))
       continue;
     Heights out;
@@ -117,7 +117,7 @@ TrainJob training(const ChartSetting& setting, const LearnOptions& learn, const 
   return out;
 }
 
-// The least that asks for the images: all kinds share them.
+// The simplest training that needs the images, which all kinds share.
 TrainJob training_of_images(const ChartSetting& setting) {
   LearnOptions least;
   least.kind = "secant";
@@ -134,7 +134,7 @@ void predict(const LearnOptions& learn, const std::string& id, bool needs_images
     preparation_s = read_seconds(times_of_images(training_of_images(setting)));
   }
   TrainJob job = training(setting, learn, id);
-  if (!needs_images) job.surfaces.reset();  // none, where nothing asks for images
+  if (!needs_images) job.surfaces.reset();  // no surfaces if no images are needed
   Reporter reporter;
   const Watch learning = watch.part(0.5, 0.9);
   reporter.on_progress = [&](double done, double total, std::string_view things) {

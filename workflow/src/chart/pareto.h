@@ -10,8 +10,9 @@ struct Trade {
   double time = 0, error = 0;
 };
 
-/// Those that no other beats in one without being worse in the other: numbers into `trades`, in the
-/// order of time. Of equal ones the first. What is not finite is left out.
+/// The Pareto front: the trades that no other trade beats in one respect without being worse in the
+/// other, as indices into `trades`, in order of time. Of equal trades the first counts. Trades that
+/// are not finite are left out.
 std::vector<std::size_t> pareto_front(const std::vector<Trade>& trades);
 
 }  // namespace surf::workflow

@@ -23,10 +23,10 @@ double status(const std::string& key) {
 
 PeakMemory::PeakMemory() {
 #if defined(__GLIBC__)
-  malloc_trim(0);  // what others have freed would hide what comes now
+  malloc_trim(0);  // freed memory that is still held would hide new allocations
 #endif
   std::ofstream reset("/proc/self/clear_refs");
-  known_ = static_cast<bool>(reset << "5" << std::flush);  // the peak is what is there now
+  known_ = static_cast<bool>(reset << "5" << std::flush);  // resets the peak to the present value
   before_ = status("VmRSS:");
 }
 

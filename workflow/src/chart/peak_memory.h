@@ -3,12 +3,12 @@
 
 namespace surf::workflow {
 
-/// How far the process's resident memory rises above where it is when this is made. Linux keeps the
-/// peak; elsewhere, or where the system does not let it be reset, nothing is known.
+/// The rise of the process's resident memory above its value at construction. Linux records the
+/// peak; elsewhere, or if the system does not allow resetting it, the rise is unknown.
 class PeakMemory {
  public:
   PeakMemory();
-  double bytes() const;  ///< 0 where it is not known
+  double bytes() const;  ///< 0 if unknown
 
  private:
   double before_ = 0;

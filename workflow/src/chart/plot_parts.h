@@ -8,7 +8,7 @@
 
 namespace surf::workflow {
 
-/// The Pareto front as steps: between two of its points the earlier one's error is to be had.
+/// The Pareto front as steps: between two points the error of the earlier one applies.
 io::PlotSeries front_series(const std::vector<Trade>& trades);
 
 }  // namespace surf::workflow

@@ -21,14 +21,14 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// A surface of the scan's frame against the truth, which is in the SEM image's.
+// Compares a surface in the scan's frame with the truth in the SEM image's frame.
 double rms_under_sem(const HeightField& surface, const SampleTruth& sample) {
   SurfaceUnderSem under = surface_under_sem(surface, sample.sem.image, sample.sem.sem_to_afm);
   under.surface.valid = under.known;
   return rms_off(under.surface, sample.truth);
 }
 
-/// Writes down when each scale ended and how far its surface was off; looking is not counted.
+/// Records the end time and the error of each scale. The time spent on measuring is not counted.
 class Steps : public ReconstructionJournal {
  public:
   Steps(const HeightField& truth, std::vector<ReconstructionStep>& steps)
@@ -67,8 +67,8 @@ void measure(Data data, ReconstructionOptions options, const ChainSetting& setti
   options.threads = setting.job.threads;
   options.watch = watch;
   Steps steps(sample.truth, point.steps);
-  // The scan alone is reconstructed on its own samples: only the end is brought over to the
-  // truth's.
+  // The scan alone is reconstructed on its own samples. Only its final surface is interpolated at
+  // the truth's samples.
   const Reconstruction r = reconstruct(data == Data::sem ? nullptr : &sample.afm,
                                        data == Data::afm ? nullptr : &sample.sem, options,
                                        data == Data::afm ? nullptr : &steps);
@@ -79,7 +79,7 @@ void measure(Data data, ReconstructionOptions options, const ChainSetting& setti
       sigma_px, run_s,
       data == Data::afm ? rms_under_sem(r.surface, sample) : rms_off(r.surface, sample.truth)};
   if (point.steps.empty()) point.steps.push_back(end);
-  else point.steps.back() = end;  // the last scale's, with what follows it
+  else point.steps.back() = end;  // the end of the last scale, including the steps after it
 }
 
 void erode_alone(const ChainSetting& setting, const Watch& watch, ReconstructionPoint& point) {

@@ -18,13 +18,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double degree = std::numbers::pi / 180;
-constexpr double part = 0.85;                  // of the image's sides that a draw sees
-constexpr double captured = 0.9;               // of the draws
-constexpr std::uint64_t draw_stream = 0x9e57;  // apart from all other uses of the seed
+constexpr double part = 0.85;                  // share of the image's sides in a draw
+constexpr double captured = 0.9;               // share of the draws
+constexpr std::uint64_t draw_stream = 0x9e57;  // separate from all other uses of the seed
 
 enum class Way { correlation, mutual_information, search, landmarks, landmarks_only };
 
-// Half normal numbers by Box and Muller.
+// Two independent standard normal numbers (Box and Muller).
 Point2 normal_pair(RandomStream& random) {
   const double r = std::sqrt(-2 * std::log(random.uniform())),
                angle = 2 * std::numbers::pi * random.uniform();
@@ -53,7 +53,7 @@ double median(std::vector<double> values) {
   return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
 }
 
-// The map, if it is to be trusted.
+// Returns the map if it is verified.
 std::optional<Affine> registered(Way way, const ChainSetting& setting, const RegistrationDraw& draw,
                                  const Watch& watch) {
   RegistrationOptions options;
@@ -175,7 +175,7 @@ std::vector<ChainMethod<RegistrationPoint>> list_registrations(const ChainChartJ
   }
   for (const auto& [family, way] :
        {std::pair{"landmarks", Way::landmarks}, std::pair{"landmarks-only", Way::landmarks_only}}) {
-    if (way == Way::landmarks_only)  // what is a tenth of a pixel off is right to begin with
+    if (way == Way::landmarks_only)  // these small offsets are within `right_px` or near it
       for (const double px : {0.1, 0.3, 1.0}) add(family, way, px, 0);
     for (const double px : shifts) add(family, way, px, 0);
   }

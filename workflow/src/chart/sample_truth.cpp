@@ -31,7 +31,8 @@ PlacedImage placed(const Image& image) {
   return out;
 }
 
-// Gains in the file are by channel, and a model may have one of them only.
+// Reads the truth except the gains: they are stored by channel, and a model may have only one of
+// the channels.
 void read_truth(const Json& t, SampleTruth& s) {
   s.name = t.at("sample");
   const Json& sem = t.at("sem");

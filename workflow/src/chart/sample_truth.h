@@ -9,24 +9,24 @@
 
 namespace surf::workflow {
 
-/// What `semsurf sample` made, with all that is true of it: the scan levelled by its own tilt, tip
-/// and noise; the map.
+/// A sample made by `semsurf sample`, with its truth: the scan levelled by its true tilt, with true
+/// tip and noise; the map.
 struct SampleTruth {
   std::string name;  ///< of the sample: "pads"
-  HeightField scan;  ///< as the AFM gave it
+  HeightField scan;  ///< as recorded by the AFM
   AfmData afm;
   SemData sem;        ///< without model, gains and noise until `give_model`
-  HeightField truth;  ///< on the SEM image's pixels, in its frame
+  HeightField truth;  ///< at the SEM image's pixels, in its frame
   std::string material;
   double energy_ev = 0, spot_nm = 0;
   std::string json;  ///< truth.json
 };
 
-/// Throws UsageError where the folder holds no sample, FileError and InvalidInput.
+/// Reads a sample. Throws UsageError if the folder holds no sample, FileError and InvalidInput.
 SampleTruth read_sample(const std::filesystem::path& folder);
 
-/// The true gains of a model's channels, and the noise that is left when they are: chance and what
-/// the model is off by.
+/// Sets the true gains of a model's channels, and the noise that remains with them: chance and the
+/// error of the model.
 void give_model(SampleTruth& sample, const std::shared_ptr<const ImageModel>& model,
                 int threads = 0);
 

@@ -19,9 +19,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A twentieth: about how much slower direct simulation is, so that all points take about as long.
+// Direct simulation is about 20 times slower, so with a twentieth of the primaries all points take
+// about as long.
 constexpr double direct_share = 1.0 / 20;
-// What is over sooner is repeated: one measurement says little then.
+// Shorter simulations are repeated, because a single measurement is inaccurate.
 constexpr double short_s = 0.5;
 constexpr int repeats = 3;
 
@@ -95,7 +96,8 @@ class List {
   }
 
   void accuracy(const char* family, mc::Method method, bool control, double accuracy) {
-    // Of a primary that counts 0 or 1, three times of four 0; where planes help fewer are enough.
+    // For a primary that counts 0 or 1 with three zeros of four, variance / mean^2 is 3. Fewer
+    // primaries suffice if planar controls help.
     const double each = (method == mc::Method::direct ? 3
                          : control                    ? 0.3
                                                       : 3) /
@@ -121,7 +123,7 @@ class List {
         what);
   }
 
-  // What `simulate` does with the scene as it is.
+  // The default behaviour of `simulate` with the scene.
   void by_default() {
     const io::SceneFile& s = setting_.job.scene;
     Simulation what{options_, s.mesh_tolerance_nm};

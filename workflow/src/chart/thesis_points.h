@@ -5,17 +5,18 @@
 
 namespace surf::workflow {
 
-/// What the thesis measured (table 10-1): sums of squared height differences of the eroded scan and
-/// of the reconstruction from scan and SEM image, and the time of the latter on a 1.3 GHz Pentium
-/// M. Its surfaces are others and its heights' number is not told, so that only the ratio can be
-/// compared.
+/// The measurements of the thesis (table 10-1): sums of squared height differences of the eroded
+/// scan and of the reconstruction from scan and SEM image, and the time of the reconstruction on a
+/// 1.3 GHz Pentium M. The thesis uses other surfaces and does not state the number of heights, so
+/// that only the ratio can be compared.
 struct ThesisPoint {
   const char* test;
-  bool real;  ///< against the eroded scan of a sharper tip; else against the true surface
+  bool real;  ///< compared with the eroded scan of a sharper tip; false: with the true surface
   double afm_squares, both_squares;
   double hours;
 
-  double ratio() const { return std::sqrt(both_squares / afm_squares); }  ///< of root mean squares
+  /// Ratio of root mean squares.
+  double ratio() const { return std::sqrt(both_squares / afm_squares); }
 };
 
 inline constexpr const char* thesis_source =

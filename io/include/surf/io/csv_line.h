@@ -7,8 +7,8 @@
 
 namespace surf::io {
 
-/// The fields of one line of a table (CSV), one at least. Commas between quotation marks belong to
-/// the field; the marks themselves and carriage returns are left out. Nothing is an error.
+/// Splits one line of a CSV table into its fields, at least one. Commas between quotation marks
+/// belong to the field. Quotation marks and carriage returns are left out. Every line is accepted.
 std::vector<std::string> split_csv_line(std::string_view line);
 
 }  // namespace surf::io

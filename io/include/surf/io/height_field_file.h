@@ -13,7 +13,7 @@
 
 namespace surf::io {
 
-/// Neither a reader of semsurf nor Gwyddion, where it is installed, knows the file as a scan.
+/// Neither a reader of semsurf nor Gwyddion, if installed, recognises the file as a scan.
 class UnknownScan : public FileError {
   using FileError::FileError;
 };
@@ -21,39 +21,40 @@ class UnknownScan : public FileError {
 /// A channel of a scan file.
 struct HeightChannel {
   std::string name;    ///< as the file calls it
-  std::string z_unit;  ///< as the file calls it; empty where it says nothing
+  std::string z_unit;  ///< as the file calls it; empty if the file names no unit
   int width = 0, height = 0;
-  bool is_height = true;  ///< a length or not said; false: amplitude, phase, volts ...
+  /// the unit is a length or not stated; false: amplitude, phase, volts ...
+  bool is_height = true;
 };
 
 struct HeightReadOptions {
-  std::string channel;  ///< by name, or by its number from 1; empty: the first of heights
-  std::optional<double> z_unit_nm;               ///< of files that do not say: default 1
-  std::optional<double> pitch_x_nm, pitch_y_nm;  ///< of files that do not say: default 1
+  std::string channel;  ///< by name, or by number from 1; empty: the first height channel
+  std::optional<double> z_unit_nm;               ///< for files that state no unit; default 1
+  std::optional<double> pitch_x_nm, pitch_y_nm;  ///< for files that state no pitch; default 1
 };
 
-/// What a scan file holds of one channel.
+/// One channel read from a scan file.
 struct HeightFieldFile {
   HeightField field;
   std::string channel;
   std::string format;  ///< "Gwyddion", "Bruker Nanoscope" ...
-  std::map<std::string, std::string>
-      metadata;                    ///< what the file says of itself; of ours, what made it
-  std::vector<std::string> notes;  ///< what had to be assumed, for the user
+  /// what the file says about itself; for a file of semsurf, how it was made
+  std::map<std::string, std::string> metadata;
+  std::vector<std::string> notes;  ///< assumptions that were made, for the user
 };
 
-/// Reads a height image by content, then by name, then through Gwyddion where it is installed: see
-/// docs/methods/afm_files.md. Row 0 is the lowest; the lower-left sample lies at (0, 0) but in
-/// files of semsurf's own, which say where it lies. Missing samples are holes. A channel that is no
-/// height is read only by name and with `z_unit_nm`. What the file says goes before `z_unit_nm` and
-/// the pitch. Throws FileError (UnknownScan for a format that is not known), Unsupported;
-/// InvalidInput where nothing in the file is a height, for an SEM image without `z_unit_nm`
-/// (`refuse_as_heights`), or where fewer than 2 x 2 samples are there; UsageError for an unknown
-/// channel.
+/// Reads a height image. The format is recognised by content, then by name, then through Gwyddion
+/// if it is installed: see docs/methods/afm_files.md. Row 0 is the lowest. The lower-left sample
+/// lies at (0, 0), except in semsurf's own files, which state its place. Missing samples are holes.
+/// A channel that is not a height is read only by name and with `z_unit_nm`. A unit or pitch stated
+/// in the file overrides `z_unit_nm` and the pitch given here. Throws FileError (UnknownScan for an
+/// unknown format), Unsupported; InvalidInput if the file holds no heights, for an SEM image
+/// without `z_unit_nm` (`refuse_as_heights`), or for fewer than 2 x 2 samples; UsageError for an
+/// unknown channel.
 HeightFieldFile read_height_field(const std::filesystem::path& path,
                                   const HeightReadOptions& options = {});
 
-/// A scan file that is read and understood once, however many of its channels are asked for.
+/// A scan file that is read and parsed once. Any number of its channels can then be taken from it.
 class HeightFile {
  public:
   /// Throws what `read_height_field` does.
@@ -70,23 +71,24 @@ class HeightFile {
   std::unique_ptr<const Content> content_;
 };
 
-/// All channels of a file, in its order, heights or not.
+/// All channels of a file, in the file's order, heights or not.
 std::vector<HeightChannel> height_channels(const std::filesystem::path& path);
 
-/// Whether a file is a scan by its content or has a name of text (.txt, .xyz ...). Images of
-/// general formats (surf/io/image_file.h) count only where they are an instrument's.
+/// Whether a file is a scan by its content or has the name of a text file (.txt, .xyz ...). Images
+/// in general formats (surf/io/image_file.h) count only if they come from an instrument.
 bool is_height_field_file(const std::filesystem::path& path);
 
-/// Whether the name is one that only instruments give their scans (.mi, .sdf, .h5-jpk ...). The
-/// content is not looked at: such a file may still be unreadable, or need Gwyddion.
+/// Whether the name's extension is one that only instruments give their scans (.mi, .sdf, .h5-jpk
+/// ...). The content is not looked at: the file may still be unreadable, or need Gwyddion.
 bool has_scan_name(const std::filesystem::path& path);
 
-/// Writes by extension: GSF (32-bit floats), TIFF and VTI (channel z_nm, 32-bit floats), text
-/// (.txt, a matrix, every digit). Placement and metadata go along; holes are NaN.
+/// Writes in the format of the extension: GSF (32-bit floats), TIFF and VTI (channel z_nm, 32-bit
+/// floats), text (.txt, a matrix, every digit). Placement and metadata are stored too. Holes are
+/// NaN.
 void write_height_field(const std::filesystem::path& path, const HeightField& field,
                         const std::map<std::string, std::string>& metadata = {});
 
-/// Throws what `write_height_field` would for the name or folder, before any work is spent.
+/// Throws what `write_height_field` would throw for the name or folder, before any work is spent.
 void check_height_field_target(const std::filesystem::path& path);
 
 }  // namespace surf::io

@@ -12,9 +12,9 @@ struct MeshUnit {
   MeshUnit(std::optional<double> given_nm, bool overrides = false)
       : nm(given_nm), overrides_file(overrides) {}
 
-  std::optional<double> nm;  ///< > 0; absent: what the file says, else 1 nm
-  bool overrides_file =
-      false;  ///< `nm` counts even where the file says another unit; else that is refused
+  std::optional<double> nm;  ///< > 0; absent: the unit stated by the file, else 1 nm
+  /// `nm` replaces a different unit stated by the file; false: a different unit is refused
+  bool overrides_file = false;
 };
 
 }  // namespace surf::io

@@ -16,10 +16,11 @@ void describe(ParameterVisitor& visit, HeightReadOptions& options);
 /// How an SEM image is read: scan.sem_channel and scan.pixel_size.
 void describe(ParameterVisitor& visit, SemReadOptions& options);
 
-/// "2nm" for square samples, or "2nmx3nm". Throws UsageError naming `subject`.
+/// Parses "2nm" for square samples, or "2nmx3nm". Throws UsageError naming `subject`.
 std::pair<double, double> parse_pitch_nm(std::string_view text, std::string_view subject);
 
-/// The length of a file's unit in nm: "um", or "25.4mm". Throws UsageError naming `subject`.
+/// Parses the length of a file's unit, "um" or "25.4mm", and returns it in nm. Throws UsageError
+/// naming `subject`.
 double parse_unit_nm(std::string_view text, std::string_view subject);
 
 }  // namespace surf::io

@@ -10,28 +10,29 @@
 
 namespace surf::io {
 
-/// A tip from heights and what is said of them, as `read_tip` reads a file. Throws InvalidInput,
-/// naming `subject`, where the highest value is found in several places that do not touch, or
-/// nowhere.
+/// Makes a tip from heights and their metadata, as `read_tip` does with a file. Throws
+/// InvalidInput, naming `subject`, if the highest value occurs in several places that do not touch,
+/// or nowhere.
 Tip to_tip(HeightField field, const std::map<std::string, std::string>& metadata,
            const std::string& subject = "tip");
 
-/// The structuring function as heights about the apex at (0, 0), holes where it is -infinity, and
-/// the metadata that makes it a tip again.
+/// A tip as a height field: the structuring function about the apex at (0, 0), with holes where it
+/// is -infinity, and the metadata that turns it into a tip again.
 struct TipHeights {
   HeightField field;
   std::map<std::string, std::string> metadata;
 };
 TipHeights to_heights(const Tip& tip, const char* subject = "tip");
 
-/// Reads a tip from any file of heights. Files hold the structuring function, as `Tip` does, unless
-/// their metadata "tip" says "physical": then the tip's own surface, apex down or up, is turned.
-/// The highest sample becomes 0 and the apex; holes become -infinity. Throws FileError,
-/// InvalidInput where the highest value is found in several places that do not touch.
+/// Reads a tip from any file of heights. A file holds the structuring function, as `Tip` does,
+/// unless its metadata "tip" is "physical": then it holds the tip's own surface, apex down or up,
+/// and is turned over. The highest sample becomes the apex with height 0; holes become -infinity.
+/// Throws FileError, and InvalidInput if the highest value occurs in several places that do not
+/// touch.
 Tip read_tip(const std::filesystem::path& path);
 
-/// Writes the structuring function as heights, holes where it is -infinity; metadata "tip" is
-/// "structuring function", and "tip.doubt" is the tip's doubt, where it has one.
+/// Writes the structuring function as heights, with holes where it is -infinity. The metadata "tip"
+/// is "structuring function"; "tip.doubt" is the tip's doubt, if it has one.
 void write_tip(const std::filesystem::path& path, const Tip& tip,
                const std::map<std::string, std::string>& metadata = {});
 

@@ -9,12 +9,12 @@
 
 namespace surf::io {
 
-/// What a file of a transform holds.
+/// The content of a transform file.
 struct TransformFile {
   Affine sem_to_afm;
-  bool verified = true;                      ///< false: a registration that should not be trusted
-  std::string verdict;                       ///< in words; empty where a person wrote the file
-  std::map<std::string, std::string> notes;  ///< how it was made
+  bool verified = true;                      ///< false: the registration should not be trusted
+  std::string verdict;                       ///< in words; empty if a person wrote the file
+  std::map<std::string, std::string> notes;  ///< how the transform was made
 };
 
 /// Writes JSON: {"semsurf": "transform", "version": 1, "sem_to_afm": [xx, xy, x0, yx, yy, y0],
@@ -22,8 +22,8 @@ struct TransformFile {
 /// FileError.
 void write_transform(const std::filesystem::path& path, const TransformFile& file);
 
-/// Reads it again, to the last digit; all but the six numbers may be missing. Throws FileError
-/// naming the place of a fault: a map that cannot be turned back is one.
+/// Reads such a file, exact to the last digit. `verified`, `verdict` and `notes` may be missing.
+/// Throws FileError naming the place of a fault; a map that cannot be inverted is one.
 TransformFile read_transform(const std::filesystem::path& path);
 
 }  // namespace surf::io

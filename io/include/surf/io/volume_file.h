@@ -7,10 +7,10 @@
 
 namespace surf::io {
 
-/// Writes a volume as VTI (ParaView, inline binary): the quantity as an array of cells, named
-/// NAME with its unit in the field "unit.NAME"; metadata as fields. The file appears under its name
-/// only when it is complete. Throws FileError, UsageError for another extension, Unsupported where
-/// this build lacks VTK.
+/// Writes a volume as VTI (ParaView, inline binary): the quantity as an array of cells, named NAME
+/// with its unit in the field "unit.NAME"; metadata as fields. The file appears under its name only
+/// when it is complete. Throws FileError, UsageError for another extension, Unsupported if this
+/// build lacks VTK.
 void write_volume(const std::filesystem::path& path, const Volume& volume);
 
 }  // namespace surf::io

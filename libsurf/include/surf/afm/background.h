@@ -18,21 +18,21 @@ struct Plane {
     return height_nm + slope_x * (x_nm - centre_x_nm) + slope_y * (y_nm - centre_y_nm);
   }
   double tilt_deg() const;  ///< from the horizontal, 0 to 90
-  double uphill_deg()
-      const;  ///< direction in which it rises most, counter-clockwise from +x; 0 to 360
+  /// Direction of steepest ascent, counter-clockwise from +x, 0 to 360.
+  double uphill_deg() const;
 };
 
-/// The plane of least squares of the vertical distances. Samples that are 0 in `use` (same size, or
-/// empty: all count) and holes play no part.
-/// Throws InvalidInput if what is left is fewer than three samples or lies on one line.
+/// The plane that minimises the squared vertical distances. Holes and samples that are 0 in `use`
+/// do not count (`use` has the field's size, or is empty: all count). Throws InvalidInput if fewer
+/// than three samples are left or they all lie on one line.
 Plane fit_plane(const HeightField& field, const Mask& use = {});
 
-/// The same with a polynomial of all terms x^i y^j, i + j <= degree (0 to 6), evaluated at every
-/// sample, holes too. Far from the samples used it means little. Throws InvalidInput if the samples
-/// do not determine it, UsageError for another degree.
+/// Fits a polynomial with all terms x^i y^j, i + j <= degree (0 to 6), and evaluates it at every
+/// sample, also in holes. Far from the samples used it is meaningless. Throws InvalidInput if the
+/// samples do not determine the polynomial, UsageError for another degree.
 Grid<double> fit_polynomial(const HeightField& field, int degree, const Mask& use = {});
 
-/// Takes it off the heights; holes stay as they are.
+/// Subtracts the plane or the background from the heights; holes stay as they are.
 void subtract(HeightField& field, const Plane& plane);
 void subtract(HeightField& field, const Grid<double>& background);
 

@@ -12,28 +12,29 @@
 namespace surf {
 
 struct BestTipOptions {
-  int width = 15,
-      height = 15;      ///< samples of the tip, >= 1, no larger than a scan; apex in the middle
+  /// Samples of the tip, >= 1, no larger than a scan; the apex is in the middle.
+  int width = 15, height = 15;
   AfmNoise noise;       ///< of all scans
-  int iterations = 64;  ///< of the last fit, >= 1; the first takes an eighth
+  int iterations = 64;  ///< of the last fit, >= 1; the first fit takes an eighth of them
   int threads = 0;      ///< 0: one per hardware thread. Does not change the result
   Watch watch;
 };
 
-/// A tip that was fitted, from the outer bound at some threshold.
+/// A fitted tip that started from the outer bound at some threshold.
 struct TipCandidate {
   double threshold_nm = 0;  ///< of the outer bound
-  double tolerance = 0;     ///< apex tolerance of the bound, in thresholds
-  double misfit = 0;        ///< e' R^-1 e per pixel: below 1 where noise is fitted, too
-  double freedom = 0;       ///< surface pixels that are touched, per pixel
-  double risk = 0;  ///< misfit + 2 freedom: Stein's estimate of the error, but for a constant
+  double tolerance = 0;     ///< apex tolerance of the outer bound, in thresholds
+  double misfit = 0;        ///< e' R^-1 e per pixel; below 1 if the fit follows the noise
+  double freedom = 0;       ///< touched surface pixels per image pixel
+  /// Stein's estimate of the error, up to a constant: misfit + 2 freedom.
+  double risk = 0;
 };
 
 struct BestTipSummary {
-  std::vector<TipCandidate>
-      candidates;                  ///< after the first fit, by tolerance and falling threshold
+  /// After the first fit, ordered by tolerance and then by falling threshold.
+  std::vector<TipCandidate> candidates;
   TipCandidate chosen;             ///< after the last fit
-  Grid<double> standard_error_nm;  ///< per sample of the tip; infinity where nothing touched it
+  Grid<double> standard_error_nm;  ///< per sample of the tip; infinity without contact
   std::int64_t touched = 0;        ///< samples of the tip that touched something
 };
 
@@ -42,20 +43,21 @@ struct BestTip {
   BestTipSummary summary;
 };
 
-/// The tip and the surfaces that make the scans most likely: scan = dilation of the surface by the
-/// tip plus noise. Surfaces are free, so sharper tips always fit better, noise as well as the
-/// surface. Two things keep the tip blunt, and neither needs a number set by hand:
-/// - a sample is less likely by a factor e for each standard deviation of the noise that it lies
-/// deeper: a
-///   pull that a few contacts outweigh, and that raises what nothing touches;
-/// - fits from 32 of blind_tip's outer bounds, at thresholds of 2.5 to 7 standard deviations,
-/// closer where
-///   the tip's volume jumps, and two apex tolerances, are compared by
-///   Stein's unbiased risk estimate (Ann. Stat. 9 (1981) 1135), which counts the surface's pixels
-///   in use.
-/// The likelihood is followed by scaled gradient steps through the contacts of the dilation.
-/// Several scans by one tip are fitted together; all have one pitch. Throws InvalidInput,
-/// UsageError, Interrupted.
+/// Finds the tip and the surfaces that maximise the likelihood of the scans: scan = dilation of the
+/// surface by the tip plus noise. The surfaces are free, so a sharper tip always fits better,
+/// because it also follows the noise. Two terms keep the tip blunt; neither needs a parameter set
+/// by hand:
+/// - The likelihood of a sample falls by a factor e for each standard deviation of the noise by
+///   which it lies deeper. A few contacts outweigh this prior; samples that touch nothing are
+///   raised by it.
+/// - Fits start from 32 outer bounds of `blind_tip`, with thresholds of 2.5 to 7 standard
+///   deviations (closer together where the tip's volume jumps) and two apex tolerances. They are
+///   compared by Stein's unbiased risk estimate (Ann. Stat. 9 (1981) 1135), which counts the
+///   surface pixels in use.
+///
+/// The likelihood is maximised by scaled gradient steps, with derivatives taken at the contacts of
+/// the dilation. Several scans by the same tip are fitted together; all scans have the same pitch.
+/// Throws InvalidInput, UsageError, Interrupted.
 BestTip best_tip(const std::vector<HeightField>& scans, const BestTipOptions& options);
 
 }  // namespace surf

@@ -9,20 +9,19 @@
 
 namespace surf {
 
-/// Where an eroded image is the surface, and not only an upper bound of it
-/// (docs/methods/certainty.md).
+/// Options for `certainty_map` (docs/methods/certainty.md).
 struct CertaintyOptions {
   double noise_nm = 0;  ///< standard deviation of the image's noise, >= 0
-  double sigmas = 3;    ///< the noise is taken to be within so many standard deviations, > 0
+  double sigmas = 3;    ///< bound of the noise, in standard deviations, > 0
 
-  /// Contacts that agree with an image pixel may be so many samples from the middle of the square
-  /// that holds them all, in [0, 100]; more leave the pixel ambiguous. -1: as many as the tip's own
-  /// apex has within the tolerance, so that a plain is certain; without noise 0, which is the
-  /// classical map.
+  /// Half the side, in samples, of the largest square of possible contacts that counts as one
+  /// place, in [0, 100]. An image pixel whose possible contacts need a larger square is ambiguous.
+  /// -1: the half side of the tip's apex region within the tolerance, so that a flat surface is
+  /// certain; without noise 0, which is the classical map.
   int neighbourhood = -1;
 
-  double distance_nm =
-      0;            ///< >= 0; of a non-contact image, the distance kept (see dilate_noncontact)
+  /// Distance kept in a non-contact image (see `dilate_noncontact`), >= 0.
+  double distance_nm = 0;
   int threads = 0;  ///< 0: one per hardware thread; the result does not depend on it
   Watch watch;
 };
@@ -31,34 +30,38 @@ struct CertaintyMap {
   static constexpr unsigned char uncertain = 255;
 
   /// Per surface sample: `uncertain`, or half the side, in samples, of the smallest square of
-  /// contacts of which it is the best. 0: the tip touched here and nowhere else.
+  /// possible contacts in which this sample fits best. 0: the tip touched this sample and no other.
   Grid<unsigned char> level;
 
-  HeightField surface;           ///< the erosion, of which this says how good it is
-  double tolerance_nm = 0;       ///< within which contacts count: 2 sigmas noise_nm, or rounding
-  int neighbourhood = 0;         ///< as used
-  std::size_t image_pixels = 0;  ///< valid ones; they are of three kinds:
-  std::size_t single = 0;        ///< their contacts lie within one neighbourhood, inside the image
-  std::size_t ambiguous = 0;     ///< they may have touched in places farther apart, or outside
-  std::size_t unexplained =
-      0;  ///< no contact of this tip explains them: noise, feedback, another tip
+  HeightField surface;  ///< the eroded image that `level` belongs to
+  /// Tolerance of possible contacts: 2 sigmas noise_nm, or the rounding error if that is larger.
+  double tolerance_nm = 0;
+  int neighbourhood = 0;         ///< the neighbourhood that was used
+  std::size_t image_pixels = 0;  ///< valid image pixels, of three kinds:
+  /// Pixels whose possible contacts lie within one neighbourhood, inside the image.
+  std::size_t single = 0;
+  /// Pixels whose possible contacts lie farther apart, or may lie outside the image.
+  std::size_t ambiguous = 0;
+  /// Pixels that no contact of this tip explains: noise, feedback error, or another tip.
+  std::size_t unexplained = 0;
   std::size_t surface_samples = 0, certain = 0;
 };
 
-/// Pingali and Jain's certainty map (1992; thesis, C.2.1) with a tolerance. If the noise is bounded
-/// by b = sigmas noise_nm, an image pixel's true contact is among the samples x with r(x) + T(x1 -
-/// x) >= h(x1) - 2 b, r the erosion, and there r is within b of the surface. If all of them lie
-/// close together, the one that fits best is certain: r is within b of the surface there or at
-/// another of them.
+/// Shows where an eroded image is the surface, and not only an upper bound of it: Pingali and
+/// Jain's certainty map (1992; thesis, C.2.1) with a tolerance. Let the noise be bounded by b =
+/// sigmas noise_nm, and let r be the erosion. The true contact of an image pixel x1 is among the
+/// samples x with r(x) + T(x1 - x) >= h(x1) - 2 b, and there r is within b of the surface. If all
+/// these samples lie close together, the one that fits best is certain: r is within b of the
+/// surface at that sample or at another one of them.
 ///
-/// What lies outside the image may have been touched too: r is continued there. Throws InvalidInput
-/// as `erode` does, and for options out of range.
+/// The tip may also have touched places outside the image, so r is continued there. Throws
+/// InvalidInput as `erode` does, and for options out of range.
 CertaintyMap certainty_map(const HeightField& image, const Tip& tip,
                            const CertaintyOptions& options = {});
 
-/// The noise of single pixels from the second differences along both axes of neighbouring samples:
-/// 1.4826 / 6 of the median absolute value (Immerkaer 1996 with a median). 0 without 3 x 3 valid
-/// samples anywhere. Too small for noise that is correlated from pixel to pixel; too large where
+/// Estimates the standard deviation of the pixel noise: 1.4826 / 6 of the median absolute value of
+/// the mixed second differences of 3 x 3 samples (Immerkaer 1996 with a median). 0 if there are no
+/// 3 x 3 valid samples. Too small for noise that is correlated from pixel to pixel; too large if
 /// detail fills more than half the image.
 double pixel_noise_nm(const HeightField& image);
 

@@ -12,7 +12,7 @@ struct HeightRange {
   double span_nm() const { return high_nm - low_nm; }
 };
 
-/// Of all valid samples of all fields. Throws InvalidInput where there is none.
+/// The range of all valid samples of all fields. Throws InvalidInput if there is no valid sample.
 HeightRange height_range(std::span<const HeightField> fields);
 
 }  // namespace surf

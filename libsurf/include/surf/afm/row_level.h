@@ -9,20 +9,21 @@
 namespace surf {
 
 enum class RowMethod {
-  median,      ///< each row's median becomes that of all rows: right where most of each row is
-               ///< substrate
-  difference,  ///< the median of the differences to the row below becomes 0: features may fill
-               ///< rows, but a tilt along y goes too, and errors add up over many rows
+  /// Makes the median of each row equal: right if most of each row is substrate.
+  median,
+  /// Makes the median difference to the row below 0. Features may fill rows, but a tilt along y is
+  /// removed too, and errors add up over many rows.
+  difference,
 };
 
 struct RowLevel {
-  std::vector<double> offsets_nm;  ///< taken off each row; their median is 0
-  int rows_without_samples = 0;    ///< which got the offset of the nearest row that has one
+  std::vector<double> offsets_nm;  ///< subtracted from each row; their median is 0
+  int rows_without_samples = 0;    ///< they get the offset of the nearest row with samples
 };
 
-/// Takes steps between scan lines off the heights, keeping the level of the whole. Samples that are
-/// 0 in `use` (same size, or empty: all count) and holes do not decide, but are shifted with their
-/// row. Throws InvalidInput if nothing remains to decide by.
+/// Removes steps between scan lines and keeps the overall level. Holes and samples that are 0 in
+/// `use` (same size, or empty: all count) do not influence the offsets, but are shifted with their
+/// row. Throws InvalidInput if no sample is left.
 RowLevel level_rows(HeightField& field, RowMethod method, const Mask& use = {});
 
 }  // namespace surf

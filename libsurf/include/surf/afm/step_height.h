@@ -9,21 +9,21 @@
 namespace surf {
 
 struct StepHeight {
-  double height_nm = 0;  ///< of the second region above the first, along z
-  double stderr_nm = 0;  ///< one standard error, with the correlation along rows
+  double height_nm = 0;  ///< height of the second region above the first, along z
+  double stderr_nm = 0;  ///< standard error, including the correlation along rows
   double slope_x = 0;    ///< common to both regions, nm per nm
   double slope_y = 0;
-  double residual_nm = 0;   ///< root mean square about the two planes
-  double alpha = 0;         ///< correlation of neighbours in a row of the residuals
-  std::size_t samples = 0;  ///< of both regions
+  double residual_nm = 0;   ///< root mean square distance from the two planes
+  double alpha = 0;         ///< correlation of neighbouring residuals in a row
+  std::size_t samples = 0;  ///< in both regions together
 };
 
-/// Two parallel planes by least squares, one through each region: as ISO 5436-1 does for profiles,
-/// with a common tilt for both levels. Choose regions away from the edge between them. The standard
-/// error takes the residuals as AR(1) noise along rows (`AfmNoise`), with rows independent:
-/// low-frequency structure and row offsets are not in it.
-/// Regions are samples that are not 0 (masks of the field's size) and not holes.
-/// Throws InvalidInput if a region is empty, they overlap, or they do not determine tilt and step.
+/// Fits two parallel planes by least squares, one through each region, as ISO 5436-1 does for
+/// profiles but with a common tilt. Choose regions away from the edge between them. The standard
+/// error assumes that the residuals are AR(1) noise along rows (`AfmNoise`) and that rows are
+/// independent; it does not include low-frequency structure and row offsets. A region consists of
+/// the samples that are not 0 in its mask (of the field's size) and not holes. Throws InvalidInput
+/// if a region is empty, the regions overlap, or they do not determine tilt and step.
 StepHeight measure_step(const HeightField& field, const Mask& first, const Mask& second);
 
 }  // namespace surf

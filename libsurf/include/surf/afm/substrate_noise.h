@@ -9,18 +9,19 @@ namespace surf {
 
 /// The noise of the substrate of a scan with features on it.
 struct SubstrateNoise {
-  HoughSummary plane;          ///< what the substrate is
-  Mask substrate;              ///< 1 for the samples that the estimate is from
-  double substrate_share = 0;  ///< of the samples that take part
+  HoughSummary plane;          ///< the plane of the substrate
+  Mask substrate;              ///< 1 for the samples that the estimate uses
+  double substrate_share = 0;  ///< share of the samples that take part
   NoiseEstimate estimate;
-  Grid<double> residual_nm;  ///< the heights less a polynomial through the substrate
+  Grid<double> residual_nm;  ///< heights minus the polynomial through the substrate
 };
 
-/// Finds the plane most samples lie on (`find_plane`) and estimates the noise
-/// (`estimate_flat_noise`) from what lies within four of its own standard deviations of that plane,
-/// and three tolerances of it at most: the inliers themselves are cut off too close to the plane,
-/// which would make the noise too small. The foot of features counts as noise where it is within.
-/// Only as good as `plane.verdict` says. Throws as these two do.
+/// Finds the plane of the substrate (`find_plane`) and estimates the noise (`estimate_flat_noise`)
+/// from the samples near it: within four of their own standard deviations, and at most three
+/// tolerances. The inliers of `find_plane` alone are cut off too close to the plane and would give
+/// too little noise. The foot of a feature counts as noise if it is within that distance. The
+/// estimate is only as good as `plane.verdict` says. Throws as `find_plane` and
+/// `estimate_flat_noise` do.
 SubstrateNoise estimate_substrate_noise(const HeightField& field,
                                         const FlatNoiseOptions& options = {}, const Mask& use = {});
 

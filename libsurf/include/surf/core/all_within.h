@@ -7,10 +7,10 @@
 
 namespace surf {
 
-/// Whether no value is farther from 0 than `most`, which is above 0, and none NaN. A pass without
-/// branches, for millions of values that usually are.
+/// Whether every |value| <= `most` (> 0) and no value is NaN. The loop has no branches: it is meant
+/// for millions of values that usually pass.
 inline bool all_within(std::span<const double> values, double most) {
-  // Without their signs doubles have the order of their bits, and NaN comes last.
+  // With the sign bit cleared, doubles order like their bits as integers, and NaN comes last.
   constexpr std::int64_t without_sign = 0x7fffffffffffffff;
   const auto limit = std::bit_cast<std::int64_t>(most);
   std::int64_t below_0_if_beyond = 0;

@@ -8,23 +8,24 @@
 
 namespace surf {
 
-/// Options that are not called by the last part of their parameter's name: "level.method" is
-/// "--level-method".
+/// Names of options that differ from the default, by parameter. The default is the last part of the
+/// parameter's name. An exception is "level.method", whose option is "--level-method".
 using OptionNames = std::map<std::string, std::string>;
 
 namespace parameters_detail {
-/// The option and its value, of a parameter that is recorded; none where its text is `usual`.
+/// Appends the option and its value to `words`. Appends nothing if the parameter is not recorded,
+/// has no value, or its text equals `usual`.
 void add_command_words(const Parameter& about, const Field& field, const std::string& usual,
                        const OptionNames& names, std::vector<std::string>& words);
 }  // namespace parameters_detail
 
-/// What a command line says to come from `usual` to `of`: option and value of every recorded
-/// parameter that differs, the option named by the last part of the parameter's name,
+/// The command-line words that change `usual` into `of`: an option and a value for every recorded
+/// parameter that differs. The last part of the parameter's name gives the option:
 /// "--working-distance".
 template <class Struct>
 std::vector<std::string> command_words(const Struct& of, const Struct& usual = {},
                                        const OptionNames& names = {}) {
-  Struct from = usual, to = of;  // a description may change what it describes
+  Struct from = usual, to = of;  // describe() may change its argument
   std::map<std::string, std::string> texts;
   for_each_parameter(
       from, [&](const Parameter& about, Field& field) { texts[about.name] = field.text(); });

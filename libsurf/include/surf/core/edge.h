@@ -3,10 +3,10 @@
 
 namespace surf {
 
-/// How a height field goes on beyond its samples.
+/// How a height field is continued beyond its samples.
 enum class Edge {
   mirror,    ///< reflected about its outermost samples
-  flat,      ///< the outermost height goes on
+  flat,      ///< continued with the outermost height
   periodic,  ///< repeated; the period is the number of samples times the pitch
 };
 

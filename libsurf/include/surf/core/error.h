@@ -6,9 +6,9 @@
 
 namespace surf {
 
-/// Base of every exception semsurf throws. A message has three parts: the subject (a file or a
-/// field), the reason, and the remedy; `what()` joins them as "subject: reason. remedy". Fields are
-/// in backticks wherever they are named: see surf/core/field_words.h.
+/// Base class of the exceptions that semsurf throws. A message has three parts: the subject (a file
+/// or a field), the reason, and the remedy. `what()` joins them as "subject: reason. remedy".
+/// Messages put the names of fields in backticks: see surf/core/field_words.h.
 class Error : public std::runtime_error {
  public:
   Error(const std::string& subject, const std::string& reason, const std::string& remedy);
@@ -28,22 +28,24 @@ class UsageError : public Error {
   using Error::Error;
 };
 
-/// Data that was read cannot be used (NaN vertices, an open mesh, an empty image). Exits with 3.
+/// Data cannot be used (NaN vertices, an open mesh, an empty image). The command line exits with 3.
 class InvalidInput : public Error {
   using Error::Error;
 };
 
-/// A file cannot be opened, read, parsed or written. Exits with 3.
+/// A file cannot be opened, read, parsed or written. The command line exits with 3.
 class FileError : public Error {
   using Error::Error;
 };
 
-/// The request is well formed but this build or version cannot do it. Exits with 3.
+/// The request is well formed but this build or version cannot fulfil it. The command line exits
+/// with 3.
 class Unsupported : public Error {
   using Error::Error;
 };
 
-/// Work was ended by its `CancelToken` and has nothing to show. No fault of anyone: exits with 130.
+/// A `CancelToken` ended the work before there was a result. This is not an error of the program or
+/// of the data. The command line exits with 130.
 class Interrupted : public std::runtime_error {
  public:
   Interrupted() : std::runtime_error("interrupted") {}

@@ -10,13 +10,13 @@ namespace surf {
 /// Heights on a regular grid.
 struct HeightField : Placement {
   Grid<double> z_nm;  ///< at least 2x2, finite where valid
-  Mask valid;         ///< samples that are heights, not holes
+  Mask valid;         ///< 0: the sample is a hole
 
   bool is_valid(int column, int row) const { return valid.includes(column, row); }
 };
 
-/// Throws InvalidInput (naming `subject`) if the field is smaller than 2x2, its placement is none,
-/// the mask has another size, or a valid height is not finite.
+/// Throws InvalidInput (naming `subject`) if the field is smaller than 2x2, its placement is
+/// invalid, the mask has another size, or a valid height is not finite.
 void validate(const HeightField& field, const char* subject = "height field");
 
 }  // namespace surf

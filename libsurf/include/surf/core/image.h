@@ -18,22 +18,23 @@ struct Channel {
   Grid<float> values;
 };
 
-/// Named float channels of one size. Pixel (0, 0) is the lower-left one.
+/// Named float channels of one size. Pixel (0, 0) is the lower-left pixel.
 struct Image : Placement {
-  std::vector<Channel> channels;  ///< one size; unique names
-  /// Provenance and settings, written into every file that can hold text. Keys are lower case
-  /// with dots ("semsurf.version", "beam.energy_ev"); nothing here depends on threads or clocks.
+  std::vector<Channel> channels;  ///< all of the same size, with unique names
+  /// Provenance and settings, written into every file format that can hold text. Keys are lower
+  /// case with dots ("semsurf.version", "beam.energy_ev"). Values do not depend on threads or
+  /// clocks.
   std::map<std::string, std::string> metadata;
 
   int width() const { return channels.empty() ? 0 : channels.front().values.width(); }
   int height() const { return channels.empty() ? 0 : channels.front().values.height(); }
 
-  /// The channel of that name, or nullptr.
+  /// The channel called `name`, or nullptr.
   const Channel* find(std::string_view name) const;
 };
 
-/// Throws InvalidInput (naming `subject`) if there is no channel, a size differs, a name is empty
-/// or used twice, or its placement is none.
+/// Throws InvalidInput (naming `subject`) if there is no channel, sizes differ, a name is empty or
+/// used twice, or the placement is invalid.
 void validate(const Image& image, const char* subject = "image");
 
 }  // namespace surf

@@ -9,21 +9,20 @@
 
 namespace surf {
 
-/// An image whose values are made row by row when they are asked for, so that it may be larger than
-/// the memory.
+/// An image whose rows are computed on request, so that it may be larger than the memory.
 struct ImageRows {
-  Image head;      ///< names and units of the channels without values, placement and metadata
+  Image head;      ///< placement, metadata, and channels with names and units but without values
   int width = 0;   ///< at least 1
   int height = 0;  ///< at least 1
-  /// Sets `row`, of `width` values, to row `y` of a channel; row 0 is the lowest. Asked in any
-  /// order, more than once, by one thread at a time.
+  /// Fills `row` (`width` values) with row `y` of a channel; row 0 is the lowest. Rows may be
+  /// requested in any order and repeatedly, by one thread at a time.
   std::function<void(std::size_t channel, int y, std::span<float> row)> read;
 };
 
-/// The rows of an image, which must outlive them.
+/// The rows of `image`, which must outlive the result.
 ImageRows rows_of(const Image& image);
 
-/// All rows.
+/// The image that consists of all rows.
 Image to_image(const ImageRows& rows);
 
 }  // namespace surf

@@ -5,8 +5,8 @@
 
 namespace surf {
 
-/// The instruction set that loops over vectors are chosen for in this process: "x86-64 with
-/// AVX-512", "x86-64 with AVX2", "x86-64", "AArch64". Results of different ones differ by rounding.
+/// The instruction set that this process uses for vectorised loops: "x86-64 with AVX-512", "x86-64
+/// with AVX2", "x86-64", "AArch64". Results on different instruction sets differ by rounding.
 std::string_view instruction_set();
 
 }  // namespace surf

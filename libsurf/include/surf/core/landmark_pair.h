@@ -5,7 +5,7 @@
 
 namespace surf {
 
-/// One place, seen in both images.
+/// The same place in both images.
 struct LandmarkPair {
   Point2 sem_nm, afm_nm;
 };

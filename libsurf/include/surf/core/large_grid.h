@@ -12,11 +12,12 @@
 
 namespace surf {
 
-/// Bytes in a nameless file that the system reads and writes as they are used, all zero at first.
-/// The file is gone with the object, or with the program, however that ends.
+/// Memory that is mapped to a nameless scratch file, all zero at first. The system reads and writes
+/// the file on demand. The file disappears with the object, and also when the program ends in any
+/// way.
 class ScratchMemory {
  public:
-  /// Takes `bytes` (> 0) of the disk at once. Throws FileError where they cannot be had.
+  /// Reserves `bytes` (> 0) on the disk. Throws FileError if the disk has no room.
   ScratchMemory(const std::string& folder, std::size_t bytes);
   ~ScratchMemory();
   ScratchMemory(const ScratchMemory&) = delete;
@@ -24,7 +25,7 @@ class ScratchMemory {
 
   void* data() const { return data_; }
 
-  /// Leaves the content to the disk: it stays, but takes no memory until it is used again.
+  /// Frees the memory. The content stays in the file and is read again on use.
   void release() const;
 
  private:
@@ -32,7 +33,8 @@ class ScratchMemory {
   std::size_t bytes_;
 };
 
-/// A grid as `Grid`, of plain values that are all zero at first, in memory or in a scratch file.
+/// A grid like `Grid`, for trivially copyable values, in memory or in a scratch file. All values
+/// are zero at first.
 template <class T>
 class LargeGrid {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -40,7 +42,7 @@ class LargeGrid {
  public:
   LargeGrid() = default;
 
-  /// In memory; with the name of a folder, in a scratch file there.
+  /// A grid in memory, or in a scratch file in `scratch_folder` if that is not empty.
   LargeGrid(int width, int height, const std::string& scratch_folder = {})
       : width_(width), height_(height) {
     if (scratch_folder.empty()) {
@@ -68,8 +70,8 @@ class LargeGrid {
   std::span<T> data() { return {data_, size()}; }
   std::span<const T> data() const { return {data_, size()}; }
 
-  /// See ScratchMemory; nothing where there is no scratch file. Whoever goes through a large grid
-  /// calls it now and then.
+  /// Calls ScratchMemory::release; does nothing for a grid in memory. Call it now and then while
+  /// you traverse a large grid.
   void release() const {
     if (scratch_) scratch_->release();
   }
@@ -81,7 +83,7 @@ class LargeGrid {
   }
 
   int width_ = 0, height_ = 0;
-  std::vector<T> values_;  // moving it leaves its elements where they are
+  std::vector<T> values_;  // a move keeps data_ valid
   std::unique_ptr<ScratchMemory> scratch_;
   T* data_ = nullptr;
 };

@@ -8,16 +8,16 @@
 
 namespace surf {
 
-/// Which samples of a grid count: those that are not 0. A mask without samples counts all of them;
-/// any other has the size of the grid that it belongs to.
+/// Selects samples of a grid: those that are not 0. An empty mask selects all samples; any other
+/// mask has the size of its grid.
 class Mask : public Grid<unsigned char> {
  public:
   using Grid::Grid;
   explicit Mask(Grid<unsigned char> grid) : Grid(std::move(grid)) {}
 
-  /// Whether the sample counts.
+  /// Whether the mask selects this sample.
   bool includes(int column, int row) const { return empty() || (*this)(column, row) != 0; }
-  /// Whether the sample of that place in row-major order counts.
+  /// Whether the mask selects the sample at this row-major index.
   bool includes(std::size_t sample) const { return empty() || data()[sample] != 0; }
 };
 

@@ -5,52 +5,53 @@
 
 namespace surf {
 
-// A module is a part of semsurf that stands on large libraries of others and gives its functions as
-// one table. A program either links it, or loads it from a file when it is first used, so that the
-// libraries behind it cost nothing before. `semsurf_module` in cmake/modules.cmake makes both;
-// docs/architecture.md says which there are.
+// A module is a part of semsurf that needs large third-party libraries. It offers its functions in
+// one table. A program either links the module or loads it from a file on first use, so that unused
+// libraries cost nothing. `semsurf_module` in cmake/modules.cmake builds both forms;
+// docs/architecture.md lists the modules.
 
-/// What a module is called and what to say where it is missing.
+/// The name of a module, and the texts for the message that it is missing.
 struct ModuleName {
-  const char* name;      ///< of the file NAME.so, and of its function semsurf_module_NAME
+  const char* name;      ///< the file is NAME.so, the function in it semsurf_module_NAME
   const char* provides;  ///< "writes VTI and VTP files"
   const char* needs;     ///< "VTK (Debian: libvtk9.1 ...)"
-  int address_mb;  ///< of address space, with the threads that its libraries start when they are
-                   ///< loaded
+  /// Address space that loading needs, including the threads that the libraries start.
+  int address_mb;
 };
 
-/// The module's table of functions; null where the module was built for another version of semsurf.
+/// Returns the module's table of functions, or null if the module was built for another version of
+/// semsurf.
 using ModuleEntry = const void* (*)(const char* version);
 
-/// The table of the module of that name, which is loaded the first time. Throws Unsupported where
-/// it is missing or cannot be loaded, with what to install. Any thread may call it.
+/// The table of functions of `module`, which is loaded on first use. Throws Unsupported, and says
+/// what to install, if the module is missing or cannot be loaded. Thread-safe.
 const void* find_module(const ModuleName& module);
 
-/// Whether `find_module` would give it. Loads it.
+/// Whether `find_module` succeeds. Loads the module.
 bool has_module(const ModuleName& module);
 
-/// The table of functions `Table`, whose `Table::module` names it.
+/// The table of functions of type `Table`. `Table::module` names its module.
 template <class Table>
 const Table& module() {
   static const Table& table = *static_cast<const Table*>(find_module(Table::module));
   return table;
 }
 
-/// Where modules that are not linked lie: beside the program, ../lib/semsurf as a rule.
+/// The folder of the modules that are not linked: usually ../lib/semsurf, relative to the program.
 std::string module_folder();
 
-/// Tells of a module that is linked. `name` must last.
+/// Registers a linked module. `name` must stay valid.
 class LinkedModule {
  public:
   LinkedModule(const char* name, ModuleEntry entry);
 };
 
-/// The version that module and program have to share.
+/// The version that a module and the program must have in common.
 const char* module_version();
 
 }  // namespace surf
 
-/// In one source of a module: says that `table` is what `find_module` gives.
+/// To be used in one source file of a module: makes `table` the result of `find_module`.
 #define SEMSURF_MODULE(name, table)                                             \
   extern "C" const void* semsurf_module_##name(const char* version) {           \
     return std::string(version) == surf::module_version() ? &(table) : nullptr; \

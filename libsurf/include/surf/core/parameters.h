@@ -15,23 +15,23 @@
 
 namespace surf {
 
-// A struct of parameters says of each field once what it is: its name, unit, range and one
-// sentence. Command line, scene files, sweeps, records, checks, ParaView and the reference are made
-// from that (docs/development/parameters.md). The member initialisers of the struct are the only
-// defaults.
+// A struct of parameters has a function `describe` that describes each field once: its name, unit,
+// range and one sentence of help. Command line, scene files, sweeps, records, checks, ParaView and
+// the reference are generated from this description (docs/development/parameters.md). The member
+// initialisers of the struct are the only defaults.
 
-/// What a number counts. Texts may carry it ("5mrad"); names of fields and records end in it
+/// The unit of a number. Texts may carry a unit ("5mrad"); names of fields and records end in it
 /// ("convergence_deg").
 enum class Unit { none, share, nm, ev, deg, pa, us, s };
 
 /// "_nm" and so on; empty for plain numbers and shares.
 std::string_view unit_suffix(Unit unit);
 
-/// Which numbers are allowed. Infinity and NaN never are.
+/// The range of allowed numbers. Infinity and NaN are never allowed.
 struct Limits {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
-  bool low_open = false, high_open = false;  ///< the end itself is not allowed
+  bool low_open = false, high_open = false;  ///< the bound itself is not allowed
 
   bool holds(double value) const;
 };
@@ -45,25 +45,26 @@ constexpr Limits at_least(double low) {
   return {low, std::numeric_limits<double>::infinity(), false, false};
 }
 
-/// Who needs it: everybody, or those who know what they do.
+/// Whether everybody needs a parameter or only experts.
 enum class Level { basic, advanced };
 
-/// What is done with a file that a parameter names: nothing is written over what is read.
+/// How a program uses a file that a parameter names. No program writes over a file that it reads.
 enum class FileRole { none, read, written, written_folder };
 
-/// What is true of a parameter wherever it is met.
+/// The description of a parameter, the same for every interface.
 struct Parameter {
-  std::string name;  ///< group and name, in snake case without unit: "beam.working_distance"
-  std::string
-      help;  ///< a noun phrase or an imperative that makes sense alone, without default and range
+  std::string name;  ///< group and name in snake case, without the unit: "beam.working_distance"
+  /// A noun phrase or an imperative that makes sense alone, without default and range.
+  std::string help;
   Unit unit = Unit::none;
   Limits limits = {};
-  std::string otherwise =
-      {};  ///< what holds where nothing is given, in words: "as its file says"; else the default
-  std::string form = {};  ///< how its text is written, "WxH"; empty: by its kind and unit
+  /// Describes in words what happens if no value is given, such as "as its file says". Empty: the
+  /// default is shown.
+  std::string otherwise = {};
+  std::string form = {};  ///< syntax of the text, such as "WxH"; empty: derived from kind and unit
   Level level = Level::basic;
   bool recorded = true;            ///< whether the result depends on it
-  FileRole file = FileRole::none;  ///< of a parameter that names a file
+  FileRole file = FileRole::none;  ///< for a parameter that names a file
 
   /// "working_distance".
   std::string_view last_name() const;
@@ -75,37 +76,39 @@ struct Parameter {
 
 enum class FieldKind { number, whole, flag, choice, text, list };
 
-/// The value of a parameter, whatever its type.
+/// Access to the value of a parameter of any type.
 class Field {
  public:
   virtual ~Field() = default;
   virtual FieldKind kind() const = 0;
-  /// Words that may stand for it, of a choice.
+  /// The allowed words of a choice.
   virtual std::vector<std::string> choices() const { return {}; }
-  /// Whether there is a value: false for an optional without one, an empty text or list.
+  /// Whether there is a value. False for an optional without value, an empty text and an empty
+  /// list.
   virtual bool given() const = 0;
-  /// The value as `read` reads it back exactly, in the native unit; of a list, with commas. Empty
-  /// where it is not given.
+  /// The value as text that `read` converts back exactly, in the native unit; lists are separated
+  /// by commas. Empty if there is no value.
   virtual std::string text() const = 0;
-  /// Takes the value from text. Throws UsageError that names `subject`, also for numbers out of
-  /// range.
+  /// Sets the value from text. Throws UsageError naming `subject` if the text is malformed or the
+  /// number is out of range.
   virtual void read(std::string_view text, const std::string& subject) = 0;
-  /// One more of a list; else as `read`.
+  /// Appends to a list; for other kinds the same as `read`.
   virtual void add(std::string_view text, const std::string& subject) { read(text, subject); }
-  /// Back to nothing, where that is possible.
+  /// Removes the value, if the type permits that.
   virtual void clear() {}
-  /// Throws UsageError that names `subject` where the value is not allowed.
+  /// Throws UsageError naming `subject` if the value is not allowed.
   virtual void check(const std::string&) const {}
 };
 
-/// Is shown each parameter of a struct by its function `describe(ParameterVisitor&, Struct&)`.
+/// Visits each parameter of a struct. The function `describe(ParameterVisitor&, Struct&)` calls the
+/// visitor.
 class ParameterVisitor {
  public:
   virtual ~ParameterVisitor() = default;
 
   virtual void visit(const Parameter& about, Field& field) = 0;
-  /// Whether it gives values: what is one of several ways then shows none of them, so that those
-  /// given can be told.
+  /// Whether the visitor sets values. Mutually exclusive parameters are then presented without
+  /// values, so that `describe` can see which of them the visitor has set.
   virtual bool reads() const { return false; }
 
   void operator()(double& value, const Parameter& about);
@@ -120,7 +123,7 @@ class ParameterVisitor {
   void operator()(std::optional<std::int64_t>& value, const Parameter& about);
   void operator()(std::optional<std::string>& value, const Parameter& about);
 
-  /// One of several words; `names` in the order of the enumeration.
+  /// A choice; `names` are in the order of the enumeration.
   template <class Enum>
   requires std::is_enum_v<Enum>
   void operator()(Enum& value, std::vector<std::string> names, const Parameter& about) {
@@ -128,7 +131,7 @@ class ParameterVisitor {
     choice(index, std::move(names), about);
     value = static_cast<Enum>(index);
   }
-  /// The same, or none of them: `none` is the word for that, or empty where there is no word.
+  /// An optional choice. `none` is the word for no choice, or empty if there is no such word.
   template <class Enum>
   requires std::is_enum_v<Enum>
   void operator()(std::optional<Enum>& value, std::vector<std::string> names,
@@ -139,8 +142,8 @@ class ParameterVisitor {
     else value = static_cast<Enum>(index);
   }
 
-  /// What has a form of its own: `write` gives an empty text for nothing, `read` throws UsageError
-  /// naming the subject.
+  /// A parameter with a syntax of its own. `write` returns an empty text for no value. `read`
+  /// throws UsageError naming the subject.
   void form(const Parameter& about, std::function<std::string()> write,
             std::function<void(std::string_view text, const std::string& subject)> read,
             FieldKind kind = FieldKind::text);
@@ -151,26 +154,26 @@ class ParameterVisitor {
                        const char* none);
 };
 
-/// A number as text to the parameter's unit; names `subject` in what it throws. The limits are
-/// checked.
+/// Converts a number with unit to the parameter's unit and checks the limits. Errors name
+/// `subject`.
 double parse_value(std::string_view text, const Parameter& about, const std::string& subject);
 
-/// "1keV", "0.002", "30deg": for people.
+/// Formats a value for people: "1keV", "0.002", "30deg".
 std::string format_value(double value, Unit unit);
 
-/// "100eV to 30keV", "below 90deg"; empty where everything is allowed.
+/// Describes the limits: "100eV to 30keV", "below 90deg". Empty if every number is allowed.
 std::string format_limits(const Parameter& about);
 
-/// "LENGTH", "N", "on|off", "mirror|flat|periodic": what stands for its value in help.
+/// The placeholder for the value in help texts: "LENGTH", "N", "on|off", "mirror|flat|periodic".
 std::string form_of(const Parameter& about, const Field& field);
 
-/// Keys and values of all recorded parameters that are given.
+/// Keys and values of all recorded parameters that have a value.
 using Record = std::map<std::string, std::string>;
 
-// For any struct that is described.
+// The following templates work for every struct with a `describe` function.
 
 namespace parameters_detail {
-/// `visit` with a function.
+/// A visitor that calls a function.
 class Calling final : public ParameterVisitor {
  public:
   Calling(std::function<void(const Parameter&, Field&)> call, bool reads)
@@ -192,17 +195,17 @@ void for_each_parameter(Struct& of, std::function<void(const Parameter&, Field&)
   describe(visitor, of);
 }
 
-/// The same for who gives values.
+/// As `for_each_parameter`, for functions that set values.
 template <class Struct>
 void read_parameters(Struct& to, std::function<void(const Parameter&, Field&)> call) {
   parameters_detail::Calling visitor(std::move(call), true);
   describe(visitor, to);
 }
 
-/// Throws UsageError that names the field for the first value that is not allowed.
+/// Throws UsageError naming the first field whose value is not allowed.
 template <class Struct>
 void check_parameters(const Struct& of) {
-  Struct copy = of;  // a description may change what it describes
+  Struct copy = of;  // describe() may change its argument
   for_each_parameter(copy, parameters_detail::check_field);
 }
 
@@ -216,8 +219,8 @@ Record record_of(const Struct& of) {
   return record;
 }
 
-/// Sets one parameter from text. Throws UsageError where there is none of that name, or its value
-/// is not allowed.
+/// Sets one parameter from text. Throws std::invalid_argument if there is no parameter `name`,
+/// UsageError if its value is not allowed.
 template <class Struct>
 void set_parameter(Struct& of, std::string_view name, std::string_view text) {
   bool found = false;

@@ -7,7 +7,7 @@
 
 namespace surf {
 
-/// One signal with its place in its microscope's frame.
+/// One signal, placed in the frame of its microscope.
 struct PlacedImage : Placement {
   Grid<double> values;  ///< at least 2x2, finite where valid
   Mask valid;           ///< pixels with a signal
@@ -15,8 +15,8 @@ struct PlacedImage : Placement {
   bool is_valid(int column, int row) const { return valid.includes(column, row); }
 };
 
-/// Throws InvalidInput (naming `subject`) if the image is smaller than 2x2, its placement is none,
-/// the mask has another size, or a valid value is not finite.
+/// Throws InvalidInput (naming `subject`) if the image is smaller than 2x2, its placement is
+/// invalid, the mask has another size, or a valid value is not finite.
 void validate(const PlacedImage& image, const char* subject = "image");
 
 }  // namespace surf

@@ -5,7 +5,7 @@
 
 namespace surf {
 
-/// The distances of neighbouring samples of a grid.
+/// The distances between neighbouring samples of a grid.
 struct Pitch {
   double pitch_x_nm = 1;  ///< between columns, > 0
   double pitch_y_nm = 1;  ///< between rows, > 0
@@ -15,16 +15,17 @@ struct Pitch {
   friend bool operator==(const Pitch&, const Pitch&) = default;
 };
 
-/// Where the samples of a grid lie: z up, x right, y up.
+/// The positions of the samples of a grid. Seen from above, x points right and y points up; z is
+/// the height.
 struct Placement : Pitch {
-  double origin_x_nm = 0;  ///< centre of sample (0, 0), which is the lower-left one
+  double origin_x_nm = 0;  ///< centre of sample (0, 0), the lower-left sample
   double origin_y_nm = 0;
 
   double x_nm(double column) const { return origin_x_nm + column * pitch_x_nm; }
   double y_nm(double row) const { return origin_y_nm + row * pitch_y_nm; }
   Point2 place_nm(double column, double row) const { return {x_nm(column), y_nm(row)}; }
 
-  /// A grid takes its place from another one by `a.placement() = b.placement()`.
+  /// Copy the placement of another grid with `a.placement() = b.placement()`.
   const Placement& placement() const { return *this; }
   Placement& placement() { return *this; }
   friend bool operator==(const Placement&, const Placement&) = default;

@@ -6,11 +6,11 @@
 
 namespace surf {
 
-/// Called now and then by long work, from one thread at a time.
-/// `done` of `total` units of work are finished; both are counted in the work's own unit.
+/// Reports the progress of a long computation, from one thread at a time. `done` of `total` units
+/// of work are finished; each computation has its own unit.
 using ProgressCallback = std::function<void(double done, double total)>;
 
-/// A flag that long work looks at between units of work. Safe to set from a signal handler.
+/// A flag that long computations poll between units of work. Safe to set from a signal handler.
 class CancelToken {
  public:
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
@@ -21,9 +21,9 @@ class CancelToken {
   static_assert(std::atomic<bool>::is_always_lock_free, "needed inside signal handlers");
 };
 
-/// The one way in which long work is watched and stopped. A function that is cancelled throws
-/// `Interrupted` (error.h), unless what is done so far is of use: then its summary says that it is
-/// not complete. What only has to look whether it should stop takes the token alone.
+/// Progress and cancellation of a long computation. A cancelled function throws `Interrupted`
+/// (error.h), unless a partial result is useful: then the summary says that the result is not
+/// complete. Functions that report no progress take only the token.
 struct Watch {
   ProgressCallback progress;            ///< may be empty
   const CancelToken* cancel = nullptr;  ///< may be null
@@ -33,8 +33,8 @@ struct Watch {
   void check() const;
   /// Calls `check`, then `progress`.
   void report(double done, double total) const;
-  /// The watch to hand to a part of the work: its progress from 0 to 1 is reported as `from` to
-  /// `to`, in [0, 1].
+  /// The watch for a part of the work: progress from 0 to 1 of the part is reported as progress
+  /// from `from` to `to` (both in [0, 1]) of the whole.
   Watch part(double from, double to) const;
 };
 

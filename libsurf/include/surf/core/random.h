@@ -6,14 +6,15 @@
 
 namespace surf {
 
-/// Four uniform 32-bit words, a function of key and counter: Philox4x32 with 7 rounds, the fewest
-/// that pass all of BigCrush (Salmon et al., SC11, doi:10.1145/2063384.2063405).
+/// Four uniform 32-bit words that are a function of key and counter: Philox4x32 with 7 rounds, the
+/// smallest number of rounds that passes all of BigCrush (Salmon et al., SC11,
+/// doi:10.1145/2063384.2063405).
 std::array<std::uint32_t, 4> random_block(const std::array<std::uint32_t, 2>& key,
                                           const std::array<std::uint32_t, 4>& counter);
 
 /// A stream of random numbers that is a pure function of (seed, pixel, electron): Philox4x32-10
-/// (Salmon et al., SC11, doi:10.1145/2063384.2063405). Threads, tiles and ranks play no part.
-/// Streams of different keys are independent for all practical purposes.
+/// (Salmon et al., SC11, doi:10.1145/2063384.2063405). It does not depend on threads, tiles or
+/// ranks. Streams with different keys are independent for all practical purposes.
 class RandomStream {
  public:
   /// `pixel` and `electron` must be below 2^48.

@@ -5,8 +5,8 @@
 
 namespace surf {
 
-/// The value at a place in the image's frame, nm, in proportion to the four samples around. NaN
-/// beyond the centres of the outermost samples and where one of those that count is a hole.
+/// The bilinear interpolation of an image at a place in its frame, nm. NaN beyond the centres of
+/// the outermost samples, and where a sample with non-zero weight is a hole.
 double sample_image(const PlacedImage& image, Point2 place_nm);
 
 }  // namespace surf

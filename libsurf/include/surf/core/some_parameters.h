@@ -10,16 +10,15 @@
 
 namespace surf {
 
-/// One of the parameters of a struct, as part of another: empty members are as the struct describes
-/// them.
+/// A parameter that one struct takes over from another. Empty members keep the other struct's text.
 struct SomeParameter {
-  std::string name;  ///< as the struct describes it
+  std::string name;  ///< as in the other struct
   std::string help = {};
   std::string otherwise = {};
 };
 
-/// Shows some parameters of a struct, in the struct's own order: for structs that use only these of
-/// it.
+/// Visits the parameters in `some`, in the order of `describe`. For structs that use only a part of
+/// another struct.
 template <class Struct>
 void describe_some(ParameterVisitor& visit, Struct& of, const std::vector<SomeParameter>& some) {
   const auto show = [&](const Parameter& about, Field& field) {
@@ -35,12 +34,13 @@ void describe_some(ParameterVisitor& visit, Struct& of, const std::vector<SomePa
   describe(shown, of);
 }
 
-/// "24,12" as whole numbers, each as `about` allows. Throws UsageError naming `subject`.
+/// Parses "24,12" as whole numbers, each within the limits of `about`. Throws UsageError naming
+/// `subject`.
 std::vector<int> parse_whole_numbers(std::string_view text, const Parameter& about,
                                      const std::string& subject);
 
-/// "X,Y" of lengths, angles and so on: as many numbers as there are commas and one. Throws
-/// UsageError naming `subject`.
+/// Parses "X,Y" as lengths, angles and so on, according to the unit of `about`: n commas separate n
+/// + 1 numbers. Throws UsageError naming `subject`.
 std::vector<double> parse_values(std::string_view text, const Parameter& about,
                                  const std::string& subject);
 

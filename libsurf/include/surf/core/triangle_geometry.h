@@ -7,7 +7,7 @@
 
 namespace surf {
 
-/// The point of the line from `a` to `b` nearest to `p`.
+/// The point of the segment from `a` to `b` that is nearest to `p`.
 inline Vec3 closest_point_of_line(const Vec3& a, const Vec3& b, const Vec3& p) {
   const Vec3 ab = b - a;
   const double along = dot(p - a, ab), whole = dot(ab, ab);
@@ -15,8 +15,8 @@ inline Vec3 closest_point_of_line(const Vec3& a, const Vec3& b, const Vec3& p) {
   return along < whole ? a + ab * (along / whole) : b;
 }
 
-/// The point of a triangle nearest to `p` (Ericson, Real-Time Collision Detection, 5.1.5). A
-/// triangle that is a line or a point is that line or point; corners have to be finite.
+/// The point of a triangle that is nearest to `p` (Ericson, Real-Time Collision Detection, 5.1.5).
+/// A degenerate triangle is treated as a segment or a point. Corners must be finite.
 inline Vec3 closest_point(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
   const double d1 = dot(ab, ap), d2 = dot(ac, ap);
@@ -36,7 +36,7 @@ inline Vec3 closest_point(const Vec3& a, const Vec3& b, const Vec3& c, const Vec
   if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0 && run > 0) return b + (c - b) * ((d4 - d3) / run);
   const double area_squared = va + vb + vc;  // of the parallelogram
   if (!(area_squared >
-        1e-14 * dot(ab, ab) * dot(ac, ac))) {  // as good as a line: the nearest of its sides'
+        1e-14 * dot(ab, ab) * dot(ac, ac))) {  // degenerate: the nearest point of the sides
     const Vec3 sides[] = {closest_point_of_line(a, b, p), closest_point_of_line(b, c, p),
                           closest_point_of_line(c, a, p)};
     const Vec3* best = sides;
@@ -48,11 +48,11 @@ inline Vec3 closest_point(const Vec3& a, const Vec3& b, const Vec3& c, const Vec
   return a + ab * (vb * scale) + ac * (vc * scale);
 }
 
-/// Half the solid angle under which a triangle is seen from 0, -pi to pi: positive where a, b, c
-/// run counterclockwise about the view of it from behind, as of a closed mesh's outward triangles
-/// seen from within. Of all triangles of a closed mesh the sum is 2 pi times how often it winds
-/// around 0 (van Oosterom and Strackee 1983, doi:10.1109/TBME.1983.325207). 0 of a triangle whose
-/// plane 0 lies in, but for points on the triangle itself, where it is any of the two sides'.
+/// Half the solid angle that a triangle subtends at the origin, -pi to pi. Positive if the origin
+/// sees the triangle from behind, as inside a closed mesh with outward normals. The sum over a
+/// closed mesh is 2 pi times the winding number of the mesh around the origin (van Oosterom and
+/// Strackee 1983, doi:10.1109/TBME.1983.325207). The result is 0 if the origin lies in the plane of
+/// the triangle; if it lies on the triangle itself, the result is that of either side.
 inline double half_solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double la = length(a), lb = length(b), lc = length(c);
   return std::atan2(dot(a, cross(b, c)),

@@ -6,12 +6,12 @@
 
 namespace surf {
 
-/// A thread that does `work`, which must not throw. Not joinable where the system refuses another
-/// thread: the caller then does the work, or says that it cannot be done.
+/// Starts a thread that runs `work`, which must not throw. The result is not joinable if the system
+/// refuses another thread: the caller then runs the work itself, or reports the failure.
 std::jthread try_thread(std::function<void()> work);
 
-/// How many threads the system has refused to this process since this was asked last.
-/// `parallel_for` does its work all the same, with fewer.
+/// The number of threads that the system has refused to this process since the last call.
+/// `parallel_for` finishes its work in any case, with fewer threads.
 int take_refused_threads();
 
 }  // namespace surf

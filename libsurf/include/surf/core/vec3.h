@@ -62,8 +62,8 @@ struct Box {
   Vec3 size_nm() const { return upper_nm - lower_nm; }
   Vec3 center_nm() const { return (lower_nm + upper_nm) * 0.5; }
 
-  /// A coordinate that is not a number changes nothing.
-  void extend(const Vec3& p) {  // std::fmin would be a call into the C library
+  /// NaN coordinates are ignored.
+  void extend(const Vec3& p) {  // std::fmin would call the C library
     lower_nm.x = p.x < lower_nm.x ? p.x : lower_nm.x;
     lower_nm.y = p.y < lower_nm.y ? p.y : lower_nm.y;
     lower_nm.z = p.z < lower_nm.z ? p.z : lower_nm.z;

@@ -11,8 +11,8 @@
 
 namespace surf {
 
-/// A quantity in the cells of a regular grid in space. Cell (i, j, k) is at
-/// i + nx (j + ny k) and fills lower_nm + (i, j, k) cell_nm to the next.
+/// A quantity in the cells of a regular spatial grid. Cell (i, j, k) has the index i + nx (j + ny
+/// k) and extends from lower_nm + (i, j, k) cell_nm to lower_nm + (i + 1, j + 1, k + 1) cell_nm.
 struct Volume {
   std::string name;  ///< of the quantity
   std::string unit;
@@ -20,7 +20,7 @@ struct Volume {
   Vec3 lower_nm;                      ///< lower corner of cell (0, 0, 0)
   Vec3 cell_nm{1, 1, 1};              ///< edges of a cell, > 0
   std::vector<double> values;
-  std::map<std::string, std::string> metadata;  ///< as an Image's
+  std::map<std::string, std::string> metadata;  ///< as in `Image`
 
   std::size_t size() const {
     return static_cast<std::size_t>(cells[0]) * static_cast<std::size_t>(cells[1]) *

@@ -8,14 +8,14 @@
 
 namespace surf {
 
-/// The parts between any of the separators, empty ones too: one more than there are separators.
-/// They point into `text`.
+/// Splits `text` at every character of `separators`; n separators give n + 1 parts, which may be
+/// empty. The parts point into `text`.
 std::vector<std::string_view> split(std::string_view text, std::string_view separators);
 
-/// Levenshtein's distance: letters to insert, remove or replace.
+/// Levenshtein's distance: the number of letters to insert, remove or replace.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// The words of a command as a shell reads them.
+/// The words of a command, quoted for a shell.
 std::string quoted_command(const std::vector<std::string>& words);
 
 }  // namespace surf

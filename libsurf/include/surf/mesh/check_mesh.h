@@ -19,10 +19,10 @@ struct MeshReport {
   std::size_t duplicate_triangles = 0;   ///< triangles beyond the first on the same three corners
   std::size_t boundary_edges = 0;        ///< edges of exactly one triangle
   std::size_t nonmanifold_edges = 0;     ///< edges of more than two triangles
-  std::size_t inconsistent_edges =
-      0;  ///< edges of two triangles that run through them the same way
-  std::size_t doubled_directed_edges = 0;  ///< directed edges that several triangles run through
-  std::size_t nonmanifold_vertices = 0;    ///< points whose triangles hang together in several fans
+  /// Edges that both of their triangles traverse in the same direction.
+  std::size_t inconsistent_edges = 0;
+  std::size_t doubled_directed_edges = 0;  ///< directed edges that several triangles traverse
+  std::size_t nonmanifold_vertices = 0;    ///< points whose triangles form several fans
   std::size_t components = 0;              ///< sets of triangles connected through shared vertices
   double area_nm2 = 0;
   double signed_volume_nm3 = 0;  ///< > 0 when normals point out; meaningful when closed
@@ -30,11 +30,11 @@ struct MeshReport {
   Vec3 first_boundary_nm;            ///< midpoint of one boundary edge, if there is any
   Vec3 first_nonmanifold_nm;         ///< midpoint of one non-manifold edge, if there is any
   Vec3 first_inconsistent_nm;        ///< midpoint of one inconsistent edge, if there is any
-  Vec3 first_nonmanifold_vertex_nm;  ///< one such vertex, if there is any
-  Vec3 first_degenerate_nm;          ///< middle of one such triangle, if there is any
-  Vec3 first_duplicate_nm;           ///< the same
+  Vec3 first_nonmanifold_vertex_nm;  ///< one non-manifold vertex, if there is any
+  Vec3 first_degenerate_nm;          ///< centre of one degenerate triangle, if there is any
+  Vec3 first_duplicate_nm;           ///< centre of one duplicate triangle, if there is any
 
-  /// Every edge is run through equally often in both directions, so that inside and outside are
+  /// Every edge is traversed equally often in both directions, so that inside and outside are
   /// defined everywhere. Non-manifold edges are allowed if they balance.
   bool closed_and_oriented = false;
 };
@@ -47,12 +47,13 @@ MeshReport check_mesh(const TriangleMesh& mesh, const Watch& watch = {});
 /// first appearance.
 std::vector<std::uint32_t> triangle_components(const TriangleMesh& mesh);
 
-/// What is wrong, a line each with how often and where: "open: 3 boundary edges near (1, 2, 3) nm".
-/// Empty for a mesh without faults. Doubled directed edges are not among them: where two triangles
-/// meet they are the inconsistent edges, elsewhere a matter of non-manifold ones.
+/// The faults of a mesh, one line each with number and place: "open: 3 boundary edges near (1, 2,
+/// 3) nm". Empty for a mesh without faults. Doubled directed edges are not listed, because they
+/// coincide with inconsistent or non-manifold edges.
 std::vector<std::string> faults(const MeshReport& report);
 
-/// One line for people: "closed, 12 triangles, 8 vertices, 1 component" or what is wrong and where.
+/// Summarises the report in one line: "closed, 12 triangles, 8 vertices, 1 component", or the
+/// faults with their places.
 std::string summary(const MeshReport& report);
 
 }  // namespace surf

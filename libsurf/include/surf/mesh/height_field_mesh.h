@@ -7,17 +7,18 @@
 
 namespace surf {
 
-/// The open sheet of triangles over the samples, normals up. Each cell is split from lower-left to
-/// upper-right. Throws InvalidInput where samples are invalid (a hole has no height).
+/// The open sheet of triangles over the samples, with normals up. Each cell is split from
+/// lower-left to upper-right. Throws InvalidInput if a sample is invalid, because a hole has no
+/// height.
 TriangleMesh height_field_sheet(const HeightField& field);
 
-/// A field with `margin_x_nm`, `margin_y_nm` (>= 0, rounded up to whole pitches) more on every
-/// side, continued by `edge`.
+/// The field enlarged by `margin_x_nm` and `margin_y_nm` (>= 0, rounded up to whole pitches) on
+/// each side, and continued by `edge`.
 HeightField extend_height_field(const HeightField& field, double margin_x_nm, double margin_y_nm,
                                 Edge edge);
 
-/// The sheet with its outermost heights drawn out horizontally by `apron_nm` (> 0) on every side,
-/// so that the half-space below has a top everywhere that electrons can reach.
+/// The sheet with its outermost heights extended horizontally by `apron_nm` (> 0) on every side, so
+/// that the half-space below has a surface everywhere that electrons can reach.
 TriangleMesh half_space_top(const HeightField& field, double apron_nm);
 
 /// A closed body: the sheet, vertical walls and a flat base at `base_z_nm`, which must lie below

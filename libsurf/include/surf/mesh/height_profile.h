@@ -8,9 +8,9 @@
 
 namespace surf {
 
-/// Heights of a surface seen from above along a straight line: `samples` (>= 2) places from one end
-/// to the other; NaN where no triangle lies. Throws what `mesh_height_field` throws, and UsageError
-/// for a line without length.
+/// The heights of a surface, seen from above, along a straight line: at `samples` (>= 2) places
+/// from one end to the other. NaN where there is no triangle. Throws like `mesh_height_field`, and
+/// UsageError for a line without length.
 std::vector<double> height_profile(const TriangleMesh& mesh, Point2 from_nm, Point2 to_nm,
                                    int samples);
 

@@ -17,23 +17,24 @@ struct MeshMeasures {
   double shortest_edge_nm = 0;
   double mean_edge_nm = 0;
   double longest_edge_nm = 0;
-  double gaussian_integral = 0;  ///< over the inner points; 4 pi for each ball-like body
-  double mean_integral_nm = 0;   ///< of the mean curvature over the surface
+  /// Of the Gaussian curvature over the inner points; 4 pi for each ball-like body.
+  double gaussian_integral = 0;
+  double mean_integral_nm = 0;  ///< of the mean curvature over the surface
 };
 
 /// Curvature at a vertex; 0 at rims, non-manifold edges and unused vertices.
 struct Curvature {
-  double mean_per_nm = 0;       ///< half the sum of the principal ones; > 0 on a ball, normals out
-  double gaussian_per_nm2 = 0;  ///< their product
-  double area_nm2 = 0;          ///< of the surface nearest to the vertex
+  double mean_per_nm = 0;       ///< mean of the principal curvatures; > 0 on a ball, normals out
+  double gaussian_per_nm2 = 0;  ///< product of the principal curvatures
+  double area_nm2 = 0;          ///< area of the surface nearest to the vertex
 };
 
-/// Throws InvalidInput on damaged meshes. Triangles of no area count for nothing.
+/// Measures a mesh. Triangles without area do not count. Throws InvalidInput on damaged meshes.
 MeshMeasures measure_mesh(const TriangleMesh& mesh);
 
-/// One for each vertex, from the angles and cotangents of its triangles (Meyer et al. 2003,
-/// doi:10.1007/978-3-662-05105-4_2). On smooth surfaces the error falls with the edge length, or
-/// its square where the triangles are regular. Throws InvalidInput on damaged meshes.
+/// The curvature at each vertex, from the angles and cotangents of its triangles (Meyer et al.
+/// 2003, doi:10.1007/978-3-662-05105-4_2). On smooth surfaces the error is proportional to the edge
+/// length, or to its square if the triangles are regular. Throws InvalidInput on damaged meshes.
 std::vector<Curvature> mesh_curvature(const TriangleMesh& mesh);
 
 }  // namespace surf

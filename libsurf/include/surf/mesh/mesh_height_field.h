@@ -9,13 +9,13 @@
 
 namespace surf {
 
-// The way back, from a height field to a mesh, is in height_field_mesh.h.
+// The inverse, from a height field to a mesh, is in height_field_mesh.h.
 
 struct MeshHeightFieldOptions {
   double pitch_nm = 1;  ///< distance of samples along x and y, > 0
 
-  /// Rectangle of the outermost samples' centres in x and y (z is ignored); its upper end is met as
-  /// closely as whole pitches allow. Default: the mesh's own box.
+  /// Rectangle through the centres of the outermost samples in x and y (z is ignored). Its upper
+  /// end is rounded to the nearest whole pitch. Default: the mesh's own box.
   std::optional<Box> region_nm;
 
   int threads = 0;  ///< 0: one per hardware thread. Does not change the result
@@ -23,9 +23,9 @@ struct MeshHeightFieldOptions {
 };
 
 /// The surface seen from above: at every sample the highest point of the mesh, as a ray along -z
-/// meets it. Samples that no triangle covers are marked invalid (height 0). Edges belong to their
-/// triangles; a sample within 1e-9 of a triangle's size outside of it counts as covered, so that
-/// samples on the rim are. Undercuts are lost. Throws InvalidInput on damaged meshes or where no
+/// hits it. Samples without a triangle are marked invalid (height 0). Triangles include their
+/// edges; a sample outside a triangle by at most 1e-9 of the triangle's size counts as covered, so
+/// that samples on the rim do. Undercuts are lost. Throws InvalidInput on damaged meshes or if no
 /// sample is covered, UsageError for a bad pitch or region, Interrupted.
 HeightField mesh_height_field(const TriangleMesh& mesh, const MeshHeightFieldOptions& options);
 

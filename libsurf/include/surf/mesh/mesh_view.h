@@ -8,7 +8,7 @@
 
 namespace surf {
 
-/// Triangles that somebody else holds, as a `TriangleMesh` has them.
+/// A non-owning view of a triangle mesh, laid out as in `TriangleMesh`.
 struct MeshView {
   std::span<const Vec3> vertices_nm;
   std::span<const Triangle> triangles;

@@ -8,19 +8,19 @@
 
 namespace surf {
 
-/// Makes an open sheet the top of a half-space: its rim is drawn out horizontally, each rim vertex
-/// radially in x and y from the rim's centroid and at its own height, so far that the new rim is at
-/// least `apron_nm` (> 0) outside the sheet's box.
+/// Extends an open sheet to the top of a half-space. The rim is extended horizontally: each rim
+/// vertex moves radially in x and y away from the rim's centroid, at its own height, until the new
+/// rim is at least `apron_nm` (> 0) outside the sheet's box.
 ///
-/// The mesh must be manifold and consistently oriented, with exactly one boundary loop that seen
-/// from above is star-shaped about its centroid (every ray from there meets it once). It may reach
-/// sideways beyond that rim by 1 % of its size at most: else it is a body with a hole. Normals
-/// point up where the rim runs counter-clockwise from above; a sheet that points down is turned.
-/// Overhangs within the rim are allowed, and so are closed bodies beside the sheet, which stay as
-/// they are.
+/// The mesh must be manifold and consistently oriented, with exactly one boundary loop. Seen from
+/// above, this loop must be star-shaped about its centroid: every ray from the centroid meets it
+/// once. The mesh may extend sideways beyond the rim by at most 1 % of the rim's size; otherwise it
+/// is a body with a hole. If the rim runs counter-clockwise seen from above, the normals point up;
+/// a sheet whose normals point down is turned over. Overhangs within the rim are allowed. Closed
+/// bodies beside the sheet are allowed and stay as they are.
 ///
-/// The sheet's own vertices come first and keep their places; equal ones are merged. Returns
-/// nothing if the mesh is no such sheet; `reason` then says why, in words that fit "it cannot stand
+/// The sheet's own vertices come first and keep their places; equal vertices are merged. Returns
+/// nothing if the mesh is not such a sheet. `reason` then completes the sentence "it cannot stand
 /// for the top of a half-space: {reason}". Throws InvalidInput on damaged meshes (`validate`),
 /// UsageError on a bad apron.
 std::optional<TriangleMesh> extend_open_sheet(const TriangleMesh& mesh, double apron_nm,

@@ -9,9 +9,9 @@
 
 namespace surf {
 
-/// The straight pieces in which a mesh meets the plane y = `y_nm`, one per triangle that crosses
-/// it. Triangles that lie in the plane or touch it from above are left out, so that no edge comes
-/// twice.
+/// The line segments in which a mesh intersects the plane y = `y_nm`, one for each triangle that
+/// crosses the plane. Triangles that lie in the plane or touch it from above are skipped, so that
+/// no edge appears twice.
 std::vector<std::array<Vec3, 2>> section_at_y(const TriangleMesh& mesh, double y_nm);
 
 }  // namespace surf

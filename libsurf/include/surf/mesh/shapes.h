@@ -18,71 +18,71 @@ TriangleMesh make_box(const Vec3& lower_nm, const Vec3& upper_nm, int subdivisio
 /// times (0 to 9), 20 * 4^subdivisions triangles.
 TriangleMesh make_sphere(const Vec3& center_nm, double radius_nm, int subdivisions = 4);
 
-/// A cone on its base, cut off at the top: `bottom_radius_nm` at z = base, `top_radius_nm` (>= 0; 0
-/// is a tip) `height_nm` above it, about a vertical axis through `base_nm`. `segments` (3 to
-/// 100,000) flat sides with their edges on the cone.
+/// A truncated cone about a vertical axis through `base_nm`: `bottom_radius_nm` at z = base,
+/// `top_radius_nm` (>= 0; 0 is a tip) `height_nm` above it. It has `segments` (3 to 100,000) flat
+/// sides whose edges lie on the cone.
 TriangleMesh make_cone(const Vec3& base_nm, double bottom_radius_nm, double top_radius_nm,
                        double height_nm, int segments = 64);
 
 /// Size and sampling of a height field centred on (0, 0).
 struct FieldExtent {
-  double width_nm = 400;  ///< from the centre of the first sample to that of the last, along x
-  double depth_nm = 400;  ///< the same along y
+  double width_nm = 400;  ///< along x, from the centre of the first sample to that of the last
+  double depth_nm = 400;  ///< along y, likewise
   double pitch_nm = 2;    ///< sample distance; width and depth are rounded to whole pitches
 };
 
-/// A square, flat-topped mesa on a plane at z = 0: `top_width_nm` wide at the top, walls sloping
-/// outwards by `wall_run_nm` (>= 0; 0 means one pitch) while falling `height_nm`.
+/// A square mesa with a flat top on a plane at z = 0: `top_width_nm` wide at the top. The walls run
+/// outwards by `wall_run_nm` (>= 0; 0 means one pitch) while they fall by `height_nm`.
 HeightField make_mesa(const FieldExtent& extent, double height_nm, double top_width_nm,
                       double wall_run_nm);
 
-/// A trench along y in a plane at z = 0, `bottom_width_nm` wide at the bottom, `depth_nm` deep,
-/// each wall running outwards by `wall_run_nm` (>= 0; 0 means one pitch).
+/// A trench along y in a plane at z = 0: `bottom_width_nm` wide at the bottom and `depth_nm` deep.
+/// Each wall runs outwards by `wall_run_nm` (>= 0; 0 means one pitch).
 HeightField make_trench(const FieldExtent& extent, double depth_nm, double bottom_width_nm,
                         double wall_run_nm);
 
-/// A line along y on a plane at z = 0, `top_width_nm` wide at the top, `height_nm` high, each wall
-/// running outwards by `wall_run_nm` (>= 0; 0 means one pitch).
+/// A line along y on a plane at z = 0: `top_width_nm` wide at the top and `height_nm` high. Each
+/// wall runs outwards by `wall_run_nm` (>= 0; 0 means one pitch).
 HeightField make_line(const FieldExtent& extent, double height_nm, double top_width_nm,
                       double wall_run_nm);
 
-/// A round hole in a plane at z = 0, `bottom_width_nm` across at the bottom, `depth_nm` deep, its
-/// wall running outwards by `wall_run_nm` (>= 0; 0 means one pitch).
+/// A round hole in a plane at z = 0: `bottom_width_nm` across at the bottom and `depth_nm` deep.
+/// Its wall runs outwards by `wall_run_nm` (>= 0; 0 means one pitch).
 HeightField make_via(const FieldExtent& extent, double depth_nm, double bottom_width_nm,
                      double wall_run_nm);
 
-/// A step along y: 0 left of the middle, `height_nm` right of it, the wall centred on the middle
-/// and `wall_run_nm` (>= 0; 0 means one pitch) long.
+/// A step along y: height 0 left of the middle and `height_nm` right of it. The wall is centred on
+/// the middle and `wall_run_nm` (>= 0; 0 means one pitch) long.
 HeightField make_step(const FieldExtent& extent, double height_nm, double wall_run_nm);
 
-/// Lines along y as of make_line, `period_nm` apart, one of them in the middle. The period must
-/// exceed the width at the foot.
+/// Lines along y like those of make_line, `period_nm` apart, one of them in the middle. The period
+/// must exceed the width at the foot.
 HeightField make_grating(const FieldExtent& extent, double height_nm, double period_nm,
                          double top_width_nm, double wall_run_nm);
 
-/// A Gaussian rough surface of zero mean: root-mean-square height `rms_nm`, Gaussian
-/// autocorrelation exp(-r^2 / L^2) with L = `correlation_nm`; periodic over the extent plus one
+/// A Gaussian rough surface of zero mean with root-mean-square height `rms_nm` and the Gaussian
+/// autocorrelation exp(-r^2 / L^2), L = `correlation_nm`. It is periodic over the extent plus one
 /// pitch, so that `periodic` edges are seamless. The same `seed` gives the same surface.
 HeightField make_rough(const FieldExtent& extent, double rms_nm, double correlation_nm,
                        std::uint64_t seed);
 
-/// A self-affine rough surface of zero mean: power spectral density proportional to
-/// (1 + (2 pi f L)^2)^-(1 + H) at the spatial frequency f, with L = `correlation_nm` and the Hurst
-/// exponent H = `hurst` in (0, 1] (Palasantzas 1993, doi:10.1103/PhysRevB.48.14472); scaled to the
-/// root-mean-square height `rms_nm`. Periodic, seed and limits as of make_rough.
+/// A self-affine rough surface of zero mean. Its power spectral density is proportional to (1 + (2
+/// pi f L)^2)^-(1 + H) at the spatial frequency f, with L = `correlation_nm` and the Hurst exponent
+/// H = `hurst` in (0, 1] (Palasantzas 1993, doi:10.1103/PhysRevB.48.14472). It is scaled to the
+/// root-mean-square height `rms_nm`. Period, seed and limits are those of make_rough.
 HeightField make_self_affine(const FieldExtent& extent, double rms_nm, double correlation_nm,
                              double hurst, std::uint64_t seed);
 
-/// A value of a two-dimensional, isotropic power spectral density: its integral over the plane of
-/// frequencies is the mean square height.
+/// A value of a two-dimensional, isotropic power spectral density. The integral of the density over
+/// the plane of frequencies is the mean square height.
 struct SpectralDensity {
   double frequency_per_nm;  ///< cycles per nm, > 0
   double density_nm4;       ///< >= 0
 };
 
-/// A Gaussian rough surface of zero mean with a tabulated spectrum: frequencies rising, at least
-/// two; straight lines in between, 0 outside. Its mean square height scatters about the spectrum's,
-/// as a piece cut from an endless surface does. Periodic and seed as of make_rough.
+/// A Gaussian rough surface of zero mean with a tabulated spectrum: at least two points with rising
+/// frequencies, interpolated linearly, 0 outside. Its mean square height scatters about that of the
+/// spectrum, as for a piece cut from an endless surface. Period and seed are those of make_rough.
 HeightField make_rough_from_spectrum(const FieldExtent& extent,
                                      const std::vector<SpectralDensity>& spectrum,
                                      std::uint64_t seed);

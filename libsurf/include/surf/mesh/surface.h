@@ -17,44 +17,44 @@ namespace surf {
 
 /// One number for each vertex of a mesh.
 struct VertexScalar {
-  std::string name;           ///< as `is_scalar_name` says: "height", "certainty"
+  std::string name;           ///< valid by `is_scalar_name`: "height", "certainty"
   std::string unit;           ///< "nm", "1/nm"; "1" for plain numbers
   std::vector<float> values;  ///< one per vertex, finite
 };
 
-/// Lower-case letters, digits and '_', a letter first.
+/// Whether a name consists of lower-case letters, digits and '_' and begins with a letter.
 bool is_scalar_name(std::string_view name);
-/// What others call a number, in that form: "Elevation (nm)" is "elevation_nm", "_HEIGHT NM"
-/// "height_nm", "2nd" "scalar_2nd". Names of that form stay.
+/// Converts a name from elsewhere to a valid name: "Elevation (nm)" to "elevation_nm", "_HEIGHT NM"
+/// to "height_nm", "2nd" to "scalar_2nd". Valid names are unchanged.
 std::string scalar_name(std::string_view name);
 
-/// A grey picture laid on a surface from straight above: each vertex shows the pixel over its x and
-/// y. Places beyond the picture show its nearest edge.
+/// A grey picture projected onto a surface from straight above: each vertex shows the pixel at its
+/// x and y. Places beyond the picture show its nearest edge.
 struct Drape : Placement {
-  std::string name;         ///< what it shows, as "SE"
-  Grid<std::uint8_t> grey;  ///< pixel (0, 0) is the lower-left one
+  std::string name;         ///< what it shows, such as "SE"
+  Grid<std::uint8_t> grey;  ///< pixel (0, 0) is the lower-left pixel
 };
 
-/// A mesh with what is known about its places.
+/// A mesh with data at its vertices.
 struct Surface {
-  std::string name;  ///< as files, ParaView and viewers show it
+  std::string name;  ///< the name in files, ParaView and viewers
   TriangleMesh mesh;
   std::vector<VertexScalar> scalars;  ///< unique names
   std::optional<Drape> drape;
 };
 
-/// All that one file of surfaces shows.
+/// The content of one file of surfaces.
 struct SurfaceScene {
   std::vector<Surface> surfaces;  ///< one or more, unique names
   std::vector<Track> tracks;      ///< paths of electrons, or none
-  /// Provenance; as in `Image`: keys are lower case with dots, nothing depends on threads or
-  /// clocks.
+  /// Provenance, as in `Image`: keys are lower case with dots, and values do not depend on threads
+  /// or clocks.
   std::map<std::string, std::string> metadata;
 };
 
 /// Throws InvalidInput (naming `subject`) if there is no surface, a mesh or track is damaged, a
-/// name is empty, not of the form said above or used twice, the number of values is not that of the
-/// vertices, a value is not finite, or a drape has no pixels or no positive finite pitch.
+/// name is empty, invalid or used twice, the number of values differs from the number of vertices,
+/// a value is not finite, or a drape has no pixels or no positive finite pitch.
 void validate(const SurfaceScene& scene, const char* subject = "surfaces");
 
 }  // namespace surf

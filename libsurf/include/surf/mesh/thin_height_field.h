@@ -10,18 +10,19 @@
 namespace surf {
 
 struct ThinOptions {
-  double tolerance_nm = 0;    ///< >= 0
-  std::size_t triangles = 0;  ///< at most so many, >= 2, whatever the tolerance; 0: no such limit
+  double tolerance_nm = 0;  ///< >= 0
+  /// Largest number of triangles, >= 2, whatever the tolerance; 0: no such limit.
+  std::size_t triangles = 0;
   Watch watch;
 };
 
 struct ThinSummary {
-  std::size_t triangles_before = 0;  ///< of height_field_sheet
+  std::size_t triangles_before = 0;  ///< number of triangles of height_field_sheet
   std::size_t triangles_after = 0;
-  /// Largest vertical distance of the two surfaces, nm: proven, not sampled (to rounding). Their
-  /// distance in space is no larger.
+  /// Largest vertical distance between the two surfaces, nm. It is proven to rounding, not sampled.
+  /// The distance in space is no larger.
   double deviation_nm = 0;
-  bool reached = true;  ///< within the tolerance; else the limit came first
+  bool reached = true;  ///< within the tolerance; false: the limit on triangles came first
 };
 
 struct ThinSheet {
@@ -29,17 +30,19 @@ struct ThinSheet {
   ThinSummary summary;
 };
 
-/// An open sheet of fewer triangles over the same rectangle, nowhere farther than the tolerance
-/// above or below `height_field_sheet`, or as near as it comes to that with the triangles allowed.
-/// It has one height over every place as the field has, so that it cannot pass through itself; its
-/// corners are samples of the field, the field's four corners among them. The rim is thinned like
-/// the rest, within the rectangle's sides. A tolerance of 0 leaves out what is exactly flat.
+/// An open sheet with fewer triangles over the same rectangle. It is nowhere farther than the
+/// tolerance above or below `height_field_sheet`, or as near as the allowed number of triangles
+/// permits. It has one height at every place, like the field, so it cannot intersect itself. Its
+/// corners are samples of the field and include the field's four corners. The rim is thinned like
+/// the rest, within the rectangle's sides. With a tolerance of 0 only exactly flat parts are
+/// thinned.
 ///
-/// Samples are added where the surface is farthest off (greedy insertion, Garland and Heckbert
-/// 1995, CMU-CS-95-181) to a Delaunay triangulation of sample positions in exact arithmetic. The
-/// difference of two surfaces of triangles is largest at a sample or where their edges cross seen
-/// from above: both are looked at, and samples added until all of them fit. A million samples take
-/// 1 to 30 s, the more the more triangles stay, and up to 0.2 GB. Deterministic.
+/// Samples are added where the deviation is largest (greedy insertion, Garland and Heckbert 1995,
+/// CMU-CS-95-181), to a Delaunay triangulation of sample positions in exact arithmetic. The
+/// difference of two surfaces of triangles is largest at a sample or at a crossing of their edges
+/// seen from above. Both are checked, and samples are added until all of them are within the
+/// tolerance. A million samples take 1 to 30 s, longer if more triangles remain, and up to 0.2 GB.
+/// Deterministic.
 ///
 /// Throws InvalidInput on a damaged field or one with invalid samples, UsageError on bad options,
 /// Interrupted.

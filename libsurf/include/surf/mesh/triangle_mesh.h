@@ -24,13 +24,13 @@ Box bounds(const TriangleMesh& mesh);
 /// Multiplies every coordinate by `factor` (> 0) and then adds `offset_nm`.
 void transform(TriangleMesh& mesh, double factor, const Vec3& offset_nm);
 
-/// Merges vertices that have exactly the same coordinates, as in STL files, where every triangle
-/// brings its own three. Keeps the order of first appearance; unused vertices are dropped.
+/// Merges vertices with exactly the same coordinates, as in STL files, where each triangle has
+/// three vertices of its own. Keeps the order of first appearance; unused vertices are dropped.
 TriangleMesh merge_equal_vertices(const TriangleMesh& mesh);
 
-/// Throws InvalidInput (naming `subject`) if there is no triangle, an index is out of range or a
-/// vertex is NaN or infinite, with the first offender in the message; Unsupported if there are more
-/// than 1.4 billion triangles.
+/// Throws InvalidInput (naming `subject`) if there is no triangle, an index is out of range, or a
+/// vertex is NaN or infinite; the message names the first fault. Throws Unsupported if there are
+/// more than 1.4 billion triangles.
 void validate(const TriangleMesh& mesh, const char* subject = "mesh");
 
 }  // namespace surf

@@ -31,18 +31,18 @@ inline Vec3 closest_point(const Corners& t, const Vec3& p) {
 }
 
 /// A bounding-volume hierarchy over the triangles of a mesh, or over those near a region. The mesh
-/// must outlive it unchanged. Building takes O(n log n) and does not depend on the number of
-/// threads; queries may run at once from several threads.
+/// must outlive the tree and must not change. Building takes O(n log n), and the result does not
+/// depend on the number of threads. Several threads may make queries at once.
 ///
 /// The tree is complete, so it needs no pointers: node i has the children 2i + 1 and 2i + 2, and
-/// each level shares out the triangles evenly. Boxes are kept in single precision, rounded outward.
+/// each level divides the triangles evenly. Boxes are stored in single precision, rounded outward.
 class TriangleTree {
  public:
   static constexpr std::uint32_t none = 0xffffffffu;
 
-  /// All triangles. `threads` >= 0; 0: one per hardware thread. Throws Interrupted.
+  /// A tree of all triangles. `threads` >= 0; 0: one per hardware thread. Throws Interrupted.
   explicit TriangleTree(const MeshView& mesh, const Watch& watch = {}, int threads = 1);
-  /// The triangles whose boxes touch `region`.
+  /// A tree of the triangles whose boxes touch `region`.
   TriangleTree(const MeshView& mesh, const Box& region, const Watch& watch = {}, int threads = 1);
 
   std::size_t size() const { return faces_.size(); }
@@ -61,9 +61,9 @@ class TriangleTree {
     return box;
   }
 
-  /// Calls visit(triangle) for triangles whose boxes come within the root of `reach_squared()` of a
-  /// point, nearer ones first where boxes do not overlap, and maybe for more. The reach may shrink
-  /// on the way.
+  /// Calls visit(triangle) for all triangles whose boxes are closer to `center` than the root of
+  /// `reach_squared()`, and possibly for others. Nearer triangles come first if boxes do not
+  /// overlap. The reach may shrink during the traversal.
   template <class Reach, class Visit>
   void visit_near(const Vec3& center, const Reach& reach_squared, const Visit& visit) const;
 
@@ -75,15 +75,15 @@ class TriangleTree {
     double distance_nm;
     std::uint32_t triangle;
   };
-  /// The triangle nearest to `p`; the first one found within 1e-12 of the tree's diagonal will do.
-  /// `start` is a guess: any triangle, the nearer the quicker.
+  /// The triangle nearest to `p`. A triangle within 1e-12 of the tree's diagonal ends the search.
+  /// `start` is a guess: any triangle is allowed, and a near one makes the search faster.
   Closest closest(const Vec3& p, std::uint32_t start = 0) const;
 
  private:
-  static constexpr double rounding = 1e-9;  // of squares of distances
+  static constexpr double rounding = 1e-9;  // relative, of squared distances
   static constexpr std::size_t most_on_stack = 80;
 
-  struct Node {  // about origin_, rounded outward
+  struct Node {  // relative to origin_, rounded outward
     float lower[3];
     float upper[3];
   };

@@ -11,13 +11,13 @@ namespace surf {
 struct LandmarkFit {
   Affine sem_to_afm;
   std::vector<double> residuals_nm;  ///< distance of each pair in the AFM's frame
-  double rms_nm = 0;                 ///< of the residuals; 0 with three pairs, which says nothing
+  double rms_nm = 0;                 ///< root mean square residual; always 0 for three pairs
 };
 
-/// The affine map that brings the SEM's points closest to the AFM's, by least squares
-/// (thesis, 7.2.4). Throws InvalidInput for fewer than three pairs, for points that are not finite,
-/// and where the map is not determined, naming the pairs (counted from 1) that coincide or that all
-/// lie on a line.
+/// Fits the affine map that brings the SEM's points closest to the AFM's, by least squares (thesis,
+/// 7.2.4). Throws InvalidInput for fewer than three pairs, for points that are not finite, and if
+/// the pairs do not determine the map. The message then names the pairs (counted from 1) that
+/// coincide or that all lie on a line.
 LandmarkFit fit_landmarks(const std::vector<LandmarkPair>& pairs);
 
 }  // namespace surf

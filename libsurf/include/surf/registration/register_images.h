@@ -12,13 +12,13 @@
 
 namespace surf {
 
-/// What is largest where two images agree.
+/// The measure of agreement that the registration maximises.
 enum class RegistrationObjective {
-  correlation,  ///< normalised cross-correlation: intensities are a rising line of each other
-  mutual_information,  ///< any relation of intensities (thesis, appendix F)
+  correlation,         ///< normalised cross-correlation: intensities rise linearly with each other
+  mutual_information,  ///< works for any relation of intensities (thesis, appendix F)
 };
 
-/// How wide bins of intensities are, for N values (thesis, appendix F).
+/// The width of bins of intensities, for N values (thesis, appendix F).
 enum class BinRule {
   interquartile,  ///< 2 IQR N^-1/3 (Freedman and Diaconis)
   deviation,      ///< 3.49 sigma N^-1/3 (Scott)
@@ -26,38 +26,41 @@ enum class BinRule {
 
 enum class EntropyEstimate {
   histogram,
-  parzen,  ///< densities by Gaussian windows, as wide as the rule's bins, from half of the samples
-           ///< and averaged over the other half
+  /// Densities from half of the samples by Gaussian windows as wide as the rule's bins, averaged
+  /// over the other half.
+  parzen,
 };
 
 struct MutualInformationOptions {
   EntropyEstimate estimate = EntropyEstimate::histogram;
   BinRule bins = BinRule::interquartile;
-  bool partial_volume =
-      true;  ///< a place between samples counts for all four; false: for its own intensity
+  /// True: a place between samples counts for all four neighbours. False: it counts for its
+  /// interpolated intensity.
+  bool partial_volume = true;
 };
 
 struct RegistrationOptions {
   RegistrationObjective objective = RegistrationObjective::correlation;
   MutualInformationOptions mutual_information;  ///< unused with correlation
 
-  /// Standard deviations of the blur of both images, in SEM pixels, in the order of use
-  /// (thesis, 7.2.5).
+  /// Standard deviations of the blur of both images, in SEM pixels, in the order in which they are
+  /// used (thesis, 7.2.5).
   std::vector<double> blurs_px = {8, 5, 4, 3, 2, 1, 0};
 
-  /// Where to begin, SEM to AFM, as from landmarks; absent: the start is searched for, among the
-  /// following.
+  /// Initial map from SEM to AFM, for example from landmarks. Without it the initial map is
+  /// searched for within the following limits.
   std::optional<Affine> start;
-  double least_scale = 0.75, largest_scale = 1.35;  ///< of the SEM's lengths in the AFM's frame
+  /// Scale of the SEM's lengths in the AFM's frame.
+  double least_scale = 0.75, largest_scale = 1.35;
   double largest_shear = 0.06;
-  double least_overlap = 0.4;  ///< share of the smaller image that must lie in the other, in (0, 1]
+  double least_overlap = 0.4;  ///< share of the smaller image that must lie in the other, (0, 1]
 
-  /// A second optimum whose score is closer to the best than so many of its standard errors is a
-  /// rival.
+  /// A second optimum is a rival if its score is within this many standard errors of the best
+  /// score.
   double rival_sigmas = 4;
 
-  /// A place whose standard error is larger, SEM pixels, root mean square over the overlap, is
-  /// ambiguous.
+  /// The result is ambiguous if its standard error (root mean square over the overlap, in SEM
+  /// pixels) is larger than this.
   double largest_stderr_px = 0.4;
 
   int threads = 0;  ///< 0: one per hardware thread. Does not change the result
@@ -65,22 +68,24 @@ struct RegistrationOptions {
 };
 
 enum class RegistrationVerdict {
-  verified,     ///< converged, and no other place fits nearly as well
-  ambiguous,    ///< another place, or a whole line of places, fits as well: see `rivals`
+  verified,     ///< converged, and no other map fits nearly as well
+  ambiguous,    ///< another map, or a continuum of maps, fits as well: see `rivals`
   unconverged,  ///< the optimiser did not settle, or settled at a limit
-  unrelated,    ///< no place where the images agree more than chance allows, or they do not overlap
+  /// The images do not overlap, or agree nowhere more than chance allows.
+  unrelated,
 };
 
 struct RegistrationRival {
   Affine sem_to_afm;
   double score = 0;
-  double distance_px = 0;  ///< root mean square over the overlap, SEM pixels from the best
+  /// Root mean square distance from the best map over the overlap, SEM pixels.
+  double distance_px = 0;
 };
 
-/// One blur of the refinement.
+/// The refinement at one blur.
 struct RegistrationStep {
   double blur_px = 0, score = 0;
-  double moved_px = 0;  ///< root mean square over the overlap
+  double moved_px = 0;  ///< root mean square displacement over the overlap
   int evaluations = 0;
 };
 
@@ -88,19 +93,20 @@ struct Registration {
   RegistrationVerdict verdict = RegistrationVerdict::unconverged;
   Affine sem_to_afm;
   double score = 0;    ///< correlation in [-1, 1], or mutual information in nats, at `blur_px`
-  double blur_px = 0;  ///< of both images: of the finest ones, where the map is known best
+  double blur_px = 0;  ///< blur of both images at which the map is known best
   std::array<double, 36> covariance{};  ///< of xx xy x0 yx yy y0, row-major
-  double stderr_px = 0;  ///< root mean square over the overlap of the place's standard error, with
-                         ///< what a tip does to edges: rather too large than too small
-  double overlap = 0;    ///< share of the SEM's pixels that lie in the AFM's image
+  /// Standard error of the mapped position, root mean square over the overlap. Includes the effect
+  /// of the tip on edges; rather too large than too small.
+  double stderr_px = 0;
+  double overlap = 0;                     ///< share of the SEM's pixels inside the AFM's image
   std::vector<RegistrationRival> rivals;  ///< best first
   std::vector<RegistrationStep> steps;
-  std::string reason;  ///< of the verdict, for people: one sentence, and what to do
+  std::string reason;  ///< reason for the verdict, for people: one sentence, and what to do
 };
 
-/// The affine map that lays the real SEM image on the one that is simulated from the AFM's surface
-/// (thesis, chapter 7). Throws InvalidInput for invalid images and images of one colour, UsageError
-/// for options out of range, Interrupted.
+/// Finds the affine map that aligns the real SEM image with the image that is simulated from the
+/// AFM's surface (thesis, chapter 7). Throws InvalidInput for invalid images and images of one
+/// colour, UsageError for options out of range, Interrupted.
 Registration register_images(const PlacedImage& sem, const PlacedImage& simulated,
                              const RegistrationOptions& options = {});
 

@@ -15,43 +15,44 @@
 
 namespace surf::workflow {
 
-/// How gains and offset are fitted.
+/// Parameters of the fit of gains and offset.
 struct CalibrateParameters {
-  Edge edge = Edge::mirror;      ///< how heights go on outside, where a model images them
-  std::vector<std::string> fit;  ///< channels; empty: SE and BSE, those that are there
-  std::optional<double> ratio;   ///< gain of the second channel over the first's
-  std::optional<double> offset;  ///< of the grey levels, where it is known
-  std::optional<double> black,
-      white;                       ///< pixels at or beyond these are saturated: they are left out
-  std::optional<double> range_nm;  ///< half the width of squares over which the gain may vary
+  Edge edge = Edge::mirror;      ///< how heights continue outside, if a model images them
+  std::vector<std::string> fit;  ///< channels to fit; empty: SE and BSE, as far as present
+  std::optional<double> ratio;   ///< gain of the second channel divided by the first's
+  std::optional<double> offset;  ///< known offset of the grey levels
+  /// Pixels at or beyond these levels are saturated and left out.
+  std::optional<double> black, white;
+  std::optional<double> range_nm;  ///< half the width of the squares over which the gain may vary
 };
-/// calibration.edge, calibration.fit and so on.
+/// The parameters calibration.edge, calibration.fit and so on.
 void describe(ParameterVisitor& visit, CalibrateParameters& parameters);
 
-/// Throws UsageError for what no image has to be seen for: ranges, names given twice, levels that
-/// contradict each other.
+/// Checks what can be checked without an image. Throws UsageError for values out of range, names
+/// given twice and levels that contradict each other.
 void check(const CalibrateParameters& parameters);
 
-/// An image of a microscope, and simulated channels of the same surface, pixel on pixel.
+/// A microscope image and simulated channels of the same surface, pixel for pixel.
 struct CalibrateInput {
-  PlacedImage image;           ///< what is not valid plays no part
-  std::string name = "IMAGE";  ///< for messages, as the next
-  Image simulated;             ///< counts per primary; what is 0 in a channel `valid` plays no part
+  PlacedImage image;           ///< invalid pixels are ignored
+  std::string name = "IMAGE";  ///< for messages, like `simulated_name`
+  Image simulated;  ///< counts per primary; pixels that are 0 in a channel `valid` are ignored
   std::string simulated_name = "simulated";
 };
 
 struct CalibrateResult {
   Calibration calibration;
-  Grid<double> fit;       ///< gains, those that vary too, times channels, plus offset
-  Grid<double> residual;  ///< the image less the fit, also where it played no part; NaN where
-                          ///< either is not known
-  Grid<double> gain;      ///< that varies slowly; empty without `range_nm`
+  /// Sum of the channels times their gains, including a varying gain, plus offset.
+  Grid<double> fit;
+  /// The image minus the fit, also at ignored pixels; NaN where either is unknown.
+  Grid<double> residual;
+  Grid<double> gain;  ///< the slowly varying gain; empty without `range_nm`
 
   bool trusted() const { return calibration.outcome == CalibrationOutcome::trusted; }
 };
 
-/// Least squares (see surf/sem/calibration.h). Warns of what cannot be trusted. Throws UsageError
-/// for channels that are not there, InvalidInput for images of different pixels.
+/// Fits by least squares (see surf/sem/calibration.h). Warns if the result cannot be trusted.
+/// Throws UsageError for missing channels, InvalidInput for images of different pixels.
 CalibrateResult calibrate(const CalibrateInput& input, const CalibrateParameters& parameters,
                           const Reporter& reporter = {});
 

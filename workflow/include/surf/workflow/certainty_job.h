@@ -11,22 +11,25 @@
 namespace surf::workflow {
 
 struct CertaintyParameters {
-  std::optional<double> noise_nm;  ///< standard deviation; else from neighbouring pixels
+  std::optional<double> noise_nm;  ///< standard deviation; absent: from neighbouring pixels
   double sigmas = CertaintyOptions{}.sigmas;
-  std::optional<int> neighbourhood;  ///< pixels; else as flat as the apex is within the noise
+  /// In pixels; absent: the part of the apex that is flat within the noise.
+  std::optional<int> neighbourhood;
   double distance_nm = CertaintyOptions{}.distance_nm;
   int threads = 0;  ///< 0: one per hardware thread. Does not change the result
 };
-/// scan.height_noise, certainty.sigmas, certainty.neighbourhood and certainty.distance.
+/// The parameters scan.height_noise, certainty.sigmas, certainty.neighbourhood and
+/// certainty.distance.
 void describe(ParameterVisitor& visit, CertaintyParameters& parameters);
 
 struct CertaintyResult {
   CertaintyMap map;
-  CertaintyParameters used;  ///< with what was found
+  CertaintyParameters used;  ///< the parameters, with the estimated values filled in
   bool trustworthy = true;   ///< false: this tip can have made less than half of the scan
 };
 
-/// The tip is of the scan's pitch (`tip_for`). Throws InvalidInput, UsageError, Interrupted.
+/// Computes the certainty map. The tip must have the scan's pitch (`tip_for`). Throws InvalidInput,
+/// UsageError, Interrupted.
 CertaintyResult certainty(const HeightField& scan, const Tip& tip,
                           const CertaintyParameters& parameters, const Reporter& reporter = {});
 

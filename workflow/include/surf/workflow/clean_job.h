@@ -10,30 +10,30 @@
 
 namespace surf::workflow {
 
-/// A median where a height is off it by more than a limit.
+/// Replaces a height by the median around it if it differs from the median by more than a limit.
 struct Spikes {
-  int width = 3;                   ///< samples, odd
-  std::optional<double> limit_nm;  ///< else six standard deviations of the noise of single pixels
+  int width = 3;                   ///< width of the neighbourhood in samples, odd
+  std::optional<double> limit_nm;  ///< absent: six standard deviations of the single-pixel noise
 };
 
-/// What is asked for happens in this order: spikes, median, closing. Widths are odd.
+/// The steps asked for are done in this order: spikes, median, closing. Widths are odd.
 struct CleanParameters {
   std::optional<Spikes> spikes;
   std::optional<int> median, closing;  ///< widths
-  bool disc = false;                   ///< medians are of discs
+  bool disc = false;                   ///< medians are taken over discs instead of squares
   bool fill_holes = false;
   int threads = 0;  ///< 0: one per hardware thread. Does not change the result
 };
-/// clean.spikes, clean.median, clean.closing, clean.disc and clean.fill_holes.
+/// The parameters clean.spikes, clean.median, clean.closing, clean.disc and clean.fill_holes.
 void describe(ParameterVisitor& visit, CleanParameters& parameters);
 
-/// Throws UsageError: ranges, and widths that are odd.
+/// Throws UsageError for values out of range and even widths.
 void check(const CleanParameters& parameters);
 
 struct CleanResult {
   HeightField field;
   std::optional<CleanSummary> spikes, median, closing;
-  CleanParameters used;  ///< with the limit of spikes that was found
+  CleanParameters used;  ///< the parameters, with the estimated spike limit filled in
 };
 
 /// Throws InvalidInput, UsageError, Interrupted.

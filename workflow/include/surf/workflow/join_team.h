@@ -7,12 +7,12 @@
 
 namespace surf::workflow {
 
-/// How many processes `mpirun` or `srun` has started together, as the environment says (Open MPI,
-/// PMIx, PMI, Slurm); 1 where this one is alone.
+/// The number of processes that `mpirun` or `srun` has started together, from the environment (Open
+/// MPI, PMIx, PMI, Slurm); 1 if this process is alone.
 int processes_started();
 
-/// Joins these processes, once in the life of one; null where this one is alone, and then nothing
-/// of MPI is loaded. Throws Unsupported where there are others and MPI is missing: each would do
+/// Joins these processes; call it once per process. Returns null if this process is alone; then MPI
+/// is not loaded. Throws Unsupported if there are others and MPI is missing: each process would do
 /// the whole job and write the same files.
 std::unique_ptr<Team> join_started_team();
 

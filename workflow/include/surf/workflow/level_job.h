@@ -17,31 +17,32 @@ enum class LevelMethod {
   hough,       ///< the plane that most of the scan lies on
   plane,       ///< the mean plane
   polynomial,  ///< of `degree`
-  none,        ///< the scan is level
+  none,        ///< nothing is taken off
 };
 
 struct LevelParameters {
   LevelMethod method = LevelMethod::hough;
-  int degree = 2;                      ///< of the polynomial
-  std::optional<double> tolerance_nm;  ///< of hough; else from the heights
-  std::optional<RowMethod> rows;       ///< steps between scan lines are taken off too
+  int degree = 2;                      ///< degree of the polynomial
+  std::optional<double> tolerance_nm;  ///< for hough; absent: from the heights
+  std::optional<RowMethod> rows;       ///< also take off steps between scan lines
 };
-/// level.method, level.degree, level.tolerance and level.rows.
+/// The parameters level.method, level.degree, level.tolerance and level.rows.
 void describe(ParameterVisitor& visit, LevelParameters& parameters);
 
 struct LevelResult {
   HeightField field;
-  Mask
-      substrate;  ///< 1 where rows and roughness go by it: of hough the plane's inliers, else `use`
-  std::optional<Plane> plane;         ///< the one taken off last, of hough and plane
-  std::optional<HoughSummary> hough;  ///< of the plane taken off last; its inliers are `substrate`
+  /// 1 for samples that rows and roughness are judged by: the plane's inliers with hough, else
+  /// `use`.
+  Mask substrate;
+  std::optional<Plane> plane;         ///< the plane taken off last, with hough and plane
+  std::optional<HoughSummary> hough;  ///< for the plane taken off last; its inliers are `substrate`
   std::optional<RowLevel> rows;
-  double tilt_deg = 0;  ///< that was taken off, the largest
+  double tilt_deg = 0;  ///< largest tilt that was taken off
 };
 
-/// The background is taken off; with `rows` then the rows by what lies on it, and once more what is
-/// left of it. Samples that are 0 in `use` (of the scan's size, or empty) do not decide. Throws
-/// InvalidInput, UsageError, Interrupted.
+/// Takes the background off. With `rows`, then takes off the steps between rows, judged by the
+/// substrate, and the remaining background once more. Samples that are 0 in `use` (of the scan's
+/// size, or empty) do not take part in the fits. Throws InvalidInput, UsageError, Interrupted.
 LevelResult level(const HeightField& scan, const LevelParameters& parameters, const Mask& use = {},
                   const Reporter& reporter = {});
 

@@ -13,15 +13,16 @@
 
 namespace surf::workflow {
 
-/// Libraries of cascades that are kept in a cache, page by page: what is there is loaded, what is
-/// missing is made and stored, and all stays in memory for as long as this lives.
+/// Libraries of cascades that are stored in a cache, page by page. Pages in the cache are loaded,
+/// missing pages are made and stored. All pages stay in memory while this object lives.
 ///
-/// A page from the cache counts only if the cache finds it sound (io::Cache), it holds a page of
-/// cascades, and its first cascades are word for word what this program makes (a few ms); else it
-/// is made again and replaced. So the libraries are the same with any cache and without one.
+/// A page from the cache counts only if the cache finds it sound (io::Cache), if it holds a page of
+/// cascades, and if its first cascades equal those that this program makes word for word (checked
+/// in a few ms). Otherwise the page is made again and replaced. So the libraries are the same with
+/// any cache and without one.
 class CachedLibraries : public mc::LibrarySource {
  public:
-  /// `folder` as io::cache_folder gives it; empty: no cache. `max_bytes`: what io::Cache keeps to.
+  /// `folder` as from io::cache_folder; empty: no cache. `max_bytes`: the size limit of io::Cache.
   explicit CachedLibraries(std::filesystem::path folder,
                            std::uint64_t max_bytes = io::Cache::default_max_bytes);
   ~CachedLibraries() override;
@@ -33,15 +34,16 @@ class CachedLibraries : public mc::LibrarySource {
                                                     std::size_t cascades, int threads,
                                                     const Watch& watch) override;
 
-  /// Pages so far, for run records.
+  /// Numbers of pages so far, for run records.
   struct Pages {
-    std::size_t loaded = 0;  ///< from the cache
+    std::size_t loaded = 0;  ///< pages loaded from the cache
     std::size_t made = 0;
-    std::size_t stored = 0;  ///< of those made
+    std::size_t stored = 0;  ///< stored pages among those made
   };
   Pages pages() const;
 
-  /// What went wrong since the last call, as sentences for the user; each is given once only.
+  /// Returns what went wrong since the last call, as sentences for the user. Each sentence is given
+  /// only once.
   std::vector<std::string> take_notes();
 
  private:

@@ -12,22 +12,22 @@
 
 namespace surf::workflow {
 
-/// A library of cascades as it lies in a cache.
+/// A library of cascades stored in a cache.
 struct StoredLibrary {
-  mc::CascadePageName name;  ///< of its first page
+  mc::CascadePageName name;  ///< name of its first page
   std::size_t cascades = 0;
-  std::uint64_t bytes = 0;                    ///< of all its files
-  std::filesystem::file_time_type last_used;  ///< of the page used last
-  std::vector<io::CacheEntry> pages;          ///< in the order of their numbers
+  std::uint64_t bytes = 0;                    ///< size of all its files
+  std::filesystem::file_time_type last_used;  ///< last use of any page
+  std::vector<io::CacheEntry> pages;          ///< in order of page number
 };
 
-/// What a cache holds.
+/// The libraries in a cache.
 struct LibraryList {
-  std::vector<StoredLibrary> libraries;  ///< by material, energy and seed
-  std::vector<io::CacheEntry> damaged;   ///< whatever they were
+  std::vector<StoredLibrary> libraries;  ///< ordered by material, energy and seed
+  std::vector<io::CacheEntry> damaged;   ///< damaged entries, whatever they held
 };
 
-/// `check` as io::Cache::list has it: `everything` reads all files.
+/// Lists the libraries of a cache. `check` as in io::Cache::list: `everything` reads all files.
 LibraryList list_libraries(const io::Cache& cache, io::Cache::Check check);
 
 }  // namespace surf::workflow

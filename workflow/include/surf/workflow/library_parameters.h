@@ -14,24 +14,28 @@
 
 namespace surf::workflow {
 
-/// Which libraries of cascades there are to be.
+/// The libraries of cascades to make.
 struct LibraryParameters {
-  std::vector<double> energies_ev = {mc::Beam{}.energy_ev};  ///< of the beams, each once
-  std::optional<std::int64_t> cascades;                      ///< in each, rounded up to whole pages
-  std::optional<double> accuracy;    ///< of images that begin with so many; not with `cascades`
-  mc::SimulationRequest simulation;  ///< its physics and seed
-  std::filesystem::path cache;       ///< empty: none
+  std::vector<double> energies_ev = {mc::Beam{}.energy_ev};  ///< beam energies, each once
+  std::optional<std::int64_t> cascades;  ///< cascades per library, rounded up to whole pages
+  /// Accuracy of the images that the library is for; excludes `cascades`.
+  std::optional<double> accuracy;
+  mc::SimulationRequest simulation;  ///< physics and seed are taken from it
+  std::filesystem::path cache;       ///< cache folder; empty: none
   int threads = 0;                   ///< 0: one per hardware thread
 };
 void describe(ParameterVisitor& visit, LibraryParameters& parameters);
 
-/// "500eV,1keV" in the order given, each once. Throws UsageError naming `subject`.
+/// Parses "500eV,1keV": the energies in the given order, each once. Throws UsageError naming
+/// `subject`.
 std::vector<double> parse_energies_ev(std::string_view text, const std::string& subject);
 
-/// The number of cascades in each library, whole pages. Throws UsageError if both ways are used.
+/// The number of cascades per library, in whole pages. Throws UsageError if both `cascades` and
+/// `accuracy` are given.
 std::size_t cascades_of(const LibraryParameters& parameters);
 
-/// Of one material, at each energy. Throws UsageError where no library can be of it.
+/// The settings of the libraries of one material, one per energy. Throws UsageError if the material
+/// cannot have a library.
 std::vector<mc::CascadeSettings> libraries_of(const LibraryParameters& parameters,
                                               const mc::Material& material);
 

@@ -10,14 +10,14 @@
 namespace surf::workflow {
 
 struct MaterialPlotOptions {
-  std::int64_t electrons = 4000;  ///< for each yield
+  std::int64_t electrons = 4000;  ///< primaries per yield
   int threads = 0;
   Watch watch;
 };
 
-/// What is known of a material's losses and scattering, from 20 eV to 30 keV above the vacuum
-/// level: its energy-loss function, free paths and losses per length of both tiers of physics, and
-/// the yields that follow for a plane, which are simulated. Throws Interrupted.
+/// Plots a material's losses and scattering from 20 eV to 30 keV above the vacuum level: its
+/// energy-loss function, free paths and losses per length in both tiers of physics, and the
+/// simulated yields of a plane. Throws Interrupted.
 io::Plot plot_material(const mc::Material& material, const MaterialPlotOptions& options = {});
 
 }  // namespace surf::workflow

@@ -7,7 +7,7 @@
 
 namespace surf::workflow {
 
-/// A yield of a flat specimen, seen from above, as somebody measured it.
+/// A measured yield of a flat specimen at normal incidence.
 struct MeasuredYield {
   std::string material;  ///< an element's symbol or a material's name
   double energy_ev = 0;  ///< > 0
@@ -15,9 +15,9 @@ struct MeasuredYield {
   bool backscattered = false;
 };
 
-/// Reads a table (CSV) with a line of names: `element`, `energy_keV`, and `delta` (secondaries) or
-/// `eta` (backscattered); others are passed over, and with a column `quantity` all lines that say
-/// other than SE or BSE. Throws FileError with the line.
+/// Reads a CSV table with a header line: `element`, `energy_keV`, and `delta` (secondaries) or
+/// `eta` (backscattered). Other columns are ignored. If there is a column `quantity`, only lines
+/// with SE or BSE count. Throws FileError with the line.
 std::vector<MeasuredYield> read_measured_yields(const std::filesystem::path& path);
 
 }  // namespace surf::workflow

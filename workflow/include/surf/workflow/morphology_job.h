@@ -12,24 +12,25 @@
 namespace surf::workflow {
 
 enum class MorphologyOperation { erode, dilate, open, close };
-/// "erode" and so on.
+/// "erode", "dilate", "open" or "close".
 const char* name(MorphologyOperation operation);
 
 struct MorphologyParameters {
   int upsample = MorphologyOptions{}.upsample;
-  double distance_nm =
-      0;            ///< kept from the surface, of non-contact scans; opening and closing know none
+  /// Distance that the tip keeps from the surface in non-contact scans; not for opening and
+  /// closing.
+  double distance_nm = 0;
   int threads = 0;  ///< 0: one per hardware thread. Does not change the result
 };
-/// morphology.upsample and morphology.distance.
+/// The parameters morphology.upsample and morphology.distance.
 void describe(ParameterVisitor& visit, MorphologyParameters& parameters);
 
-/// Throws InvalidInput, UsageError, Interrupted.
+/// Applies the operation. Throws InvalidInput, UsageError, Interrupted.
 HeightField morphology(MorphologyOperation operation, const HeightField& field, const Tip& tip,
                        const MorphologyParameters& parameters, const Reporter& reporter = {});
 
-/// The tip as it meets a scan: of its pitch, with a note where it was resampled, a warning where it
-/// is larger, and one where `name`, the tip's file, says that it is not to be trusted. Throws
+/// Prepares a tip for a scan by resampling it to the scan's pitch. Notes the resampling. Warns if
+/// the tip is larger than the scan, and if `name`, the tip's file, states a doubt. Throws
 /// InvalidInput.
 Tip tip_for(Tip tip, const HeightField& scan, const std::string& name,
             const Reporter& reporter = {});

@@ -14,24 +14,25 @@
 namespace surf::workflow {
 
 struct ScanNoiseParameters {
-  bool flat = false;  ///< all of the scan is flat; else the noise is that of the substrate
+  bool flat = false;  ///< the whole scan is flat; false: the noise is that of the substrate
   int degree = FlatNoiseOptions{}.degree;
   int lags = NoiseCheckOptions{}.lags;
 };
-/// noise.flat, noise.degree and noise.lags.
+/// The parameters noise.flat, noise.degree and noise.lags.
 void describe(ParameterVisitor& visit, ScanNoiseParameters& parameters);
 
 struct ScanNoise {
   NoiseEstimate estimate;
-  Mask samples;                       ///< 1 where the estimate is from
-  Grid<double> residual_nm, white;    ///< what is left of the heights, and of that by the model
-  double substrate_share = 1;         ///< of the samples that take part
+  Mask samples;  ///< 1 for samples that the estimate is made from
+  /// The residual of the heights, and that residual whitened by the noise model.
+  Grid<double> residual_nm, white;
+  double substrate_share = 1;         ///< share of the used samples that lie on the substrate
   std::optional<HoughSummary> plane;  ///< of the substrate
-  std::optional<NoiseCheck> check;    ///< none where there is no noise at all
+  std::optional<NoiseCheck> check;    ///< absent if there is no noise at all
 };
 
-/// Samples that are 0 in `use` (of the scan's size, or empty) play no part. Throws InvalidInput,
-/// UsageError, Interrupted.
+/// Estimates the noise of a scan. Samples that are 0 in `use` (of the scan's size, or empty) are
+/// ignored. Throws InvalidInput, UsageError, Interrupted.
 ScanNoise noise_of_scan(const HeightField& scan, const ScanNoiseParameters& parameters,
                         const Mask& use = {}, const Reporter& reporter = {});
 

@@ -16,43 +16,43 @@
 
 namespace surf::workflow {
 
-/// An image from heights and a model, in place of a simulation.
+/// Predicts an image from heights by a trained model, instead of a simulation.
 struct PredictJob {
-  std::filesystem::path model;  ///< its file
+  std::filesystem::path model;  ///< the model's file
   HeightField field;
-  std::filesystem::path input;  ///< the file that the heights are from; may be empty
+  std::filesystem::path input;  ///< file that the heights come from; may be empty
   Edge edge = Edge::mirror;
-  bool resample = false;  ///< heights of another pitch are resampled, not refused
-  ModelScope wanted;      ///< what it must have been trained for; empty and 0: whatever
+  bool resample = false;  ///< heights of another pitch are resampled; false: they are refused
+  ModelScope wanted;      ///< required scope of the training; empty and 0: any
   int threads = 0;
-  std::vector<std::filesystem::path>
-      outputs;                    ///< formats by extension; none: the image stays in the summary
-  std::string png_channel;        ///< for PNG; empty: the first
-  io::HeightReadOptions reading;  ///< how `input` was read: of the record
+  /// Output files, formats by extension; none: the image stays in the summary.
+  std::vector<std::filesystem::path> outputs;
+  std::string png_channel;        ///< channel shown in a PNG; empty: the first
+  io::HeightReadOptions reading;  ///< how `input` was read, for the record
 };
-/// prediction.model, prediction.edge and so on; not the heights.
+/// The parameters prediction.model, prediction.edge and so on; not the heights.
 void describe(ParameterVisitor& visit, PredictJob& job);
 
 struct PredictSummary {
   TrainedModel model;
-  Image image;         ///< as it was written
-  SurfaceRange range;  ///< of the heights, at the model's pixel
-  double seconds = 0;  ///< of the prediction alone
+  Image image;         ///< the image as written
+  SurfaceRange range;  ///< range of the heights at the model's pixel size
+  double seconds = 0;  ///< time of the prediction alone
   std::vector<std::string> warnings;
 };
 
-/// Heights at the pixel of the model, where the job asks for resampling; else as they are.
+/// The heights, resampled to the model's pixel size if the job asks for it; else unchanged.
 HeightField heights_for(const PredictJob& job, const ModelScope& scope);
 
-/// Checks model and outputs, predicts and writes. The image has a channel for each of the model's,
-/// in counts per primary, placed as the heights are, and says which model of which hash made it.
-/// Warns where the surface is steeper than any that the model has learnt from. Throws UsageError
-/// where the model was trained for anything else than what is wanted, InvalidInput, FileError, and
-/// Interrupted before anything is written.
+/// Checks model and outputs, predicts and writes. The image has the model's channels in counts per
+/// primary and is placed as the heights are. Its metadata state the model and the model's hash.
+/// Warns if the surface is steeper than any training surface. Throws UsageError if the model was
+/// trained for another scope than `wanted`, InvalidInput, FileError, and Interrupted before
+/// anything is written.
 PredictSummary run(const PredictJob& job, const Reporter& reporter = {});
 
-/// What should be known of a prediction of these heights: whether they are steeper than any that
-/// the model has learnt from.
+/// Warnings about a prediction of these heights: the heights are steeper than any that the model
+/// was trained on.
 std::vector<std::string> prediction_warnings(const TrainedModel& model, const HeightField& field);
 
 }  // namespace surf::workflow

@@ -13,87 +13,90 @@
 
 namespace surf::workflow {
 
-/// Gains and offset, where they are known.
+/// Known gains and offset.
 struct GivenCalibration {
-  std::vector<double> gains;  ///< one per channel of the model
+  std::vector<double> gains;  ///< one gain per channel of the model
   double offset = 0;
 };
 
-/// One surface from an AFM scan and an SEM image, or from one of them: the chain of the thesis's
-/// figure 1-3.
+/// Reconstructs one surface from an AFM scan and an SEM image, or from one of them: the chain of
+/// the thesis's figure 1-3.
 struct ReconstructJob {
   std::optional<AfmInput> afm;
   std::optional<SemInput> sem;
   ModelRequest model;
   PoseOptions pose;
-  std::optional<GivenCalibration>
-      calibration;                    ///< needed without a scan, which it is fitted with otherwise
+  /// Required without a scan; absent: fitted with the scan.
+  std::optional<GivenCalibration> calibration;
   std::optional<SemNoise> sem_noise;  ///< absent: estimated
-  int upsample = 3;                   ///< of the scan, see AfmData
-  std::optional<bool>
-      refine_tip;                 ///< fit the tip with the surface; absent: if it was found blindly
-  ReconstructionOptions options;  ///< its threads are for all steps; `refine_tip` is as above
-  std::optional<HeightField>
-      truth;  ///< in the SEM's frame, or the scan's without an SEM image: to compare with
+  int upsample = 3;                   ///< upsampling of the scan, see AfmData
+  /// Fit the tip together with the surface; absent: if the tip was found blindly.
+  std::optional<bool> refine_tip;
+  /// its threads are used for all steps; `refine_tip` above replaces its own
+  ReconstructionOptions options;
+  /// True surface to compare with, in the SEM's frame, or in the scan's frame without an SEM image.
+  std::optional<HeightField> truth;
   std::filesystem::path truth_file;
-  std::filesystem::path
-      folder;  ///< of the result; made where it is missing. Empty: no files are written
-  std::string command_line;  ///< as given, for the record
-  bool picture = true;       ///< panel.png, which needs Python with Matplotlib
+  /// Output folder, created if it is missing. Empty: no files are written.
+  std::filesystem::path folder;
+  std::string command_line;  ///< the command line as given, for the record
+  bool picture = true;       ///< write panel.png, which needs Python with Matplotlib
 };
-/// Those of the inputs that there are, of the options, and of the output.
+/// The parameters of the inputs that are present, of the options, and of the output.
 void describe(ParameterVisitor& visit, ReconstructJob& job);
 
-/// How far a surface is from the true one. A scan does not know where 0 is, so the mean difference
-/// is taken off.
+/// The difference between a surface and the true one. The mean difference is taken off, because a
+/// scan does not know where 0 is.
 struct TruthReport {
   double rms_nm = 0;
-  double start_rms_nm = 0;  ///< of the eroded scan, likewise
-  double offset_nm = 0;     ///< the mean difference
-  double plane_rms_nm = 0;  ///< with the best plane taken off
+  double start_rms_nm = 0;  ///< rms_nm of the eroded scan
+  double offset_nm = 0;     ///< mean difference
+  double plane_rms_nm = 0;  ///< rms with the best plane taken off
   double coverage_1 = 0,
-         coverage_2 = 0;  ///< shares within one and two standard deviations; 0 without deviations
+         /// Shares of pixels within one and two posterior standard deviations; 0 if these are
+         /// unknown.
+      coverage_2 = 0;
   std::int64_t pixels = 0;
 };
 
 enum class ReconstructionVerdict {
   sound,           ///< converged, and the residuals look like noise
-  flagged,         ///< there is a result, but look at `reasons` first
-  not_registered,  ///< the registration is not verified: nothing was reconstructed
+  flagged,         ///< there is a result, but check `reasons` first
+  not_registered,  ///< the registration is not verified, so nothing was reconstructed
 };
 
 struct ReconstructSummary {
   ReconstructionVerdict verdict = ReconstructionVerdict::sound;
-  std::vector<std::string> reasons;   ///< of a verdict other than sound, for people
-  std::vector<std::string> warnings;  ///< of all steps, as they were told
+  std::vector<std::string> reasons;   ///< reasons of a verdict other than sound, in words
+  std::vector<std::string> warnings;  ///< warnings of all steps, as reported
   std::optional<PreparedAfm> afm;
   std::optional<StoredModel> model;
   std::optional<Pose> pose;
-  std::optional<Calibration> calibration;  ///< that the reconstruction begins with; absent: given
-  bool gains_tied = false;  ///< the channels cannot be told apart: one gain for all, not refined
+  std::optional<Calibration> calibration;  ///< initial calibration; absent: it was given
+  bool gains_tied = false;  ///< the channels cannot be told apart: one fixed gain for all
   std::optional<SemNoise> sem_noise;
-  std::string sem_noise_from;  ///< where it comes from, in words
-  std::int64_t saturated = 0;  ///< SEM pixels left out
+  std::string sem_noise_from;  ///< source of the SEM noise, in words
+  std::int64_t saturated = 0;  ///< number of saturated SEM pixels, which are left out
   Reconstruction result;
   std::optional<TruthReport> truth;
   bool resumed = false;
   std::vector<std::filesystem::path> written;
 };
 
-/// Does it all and writes into `folder`: surface.vti, .gsf and .glb, simulated_afm.vti,
-/// simulated_sem.vti, history.csv, transform.json, tip.txt (and first_tip.txt where it was fitted),
-/// model.json, report.json, panel.png. While it works a file `checkpoint` there holds what is done
-/// after each scale: the same job, started again, goes on from it to the same bytes, whether it was
-/// cancelled (Interrupted is thrown) or killed. One of another job is begun anew. Nothing is
-/// written where the registration is not verified, but transform.json and registration.png. Throws
+/// Runs the whole chain and writes into `folder`: surface.vti, .gsf and .glb, simulated_afm.vti,
+/// simulated_sem.vti, history.csv, transform.json, tip.txt (and first_tip.txt if the tip was
+/// fitted), model.json, report.json, panel.png. While it runs, a file `checkpoint` there holds the
+/// state after each scale: the same job, started again after cancellation (Interrupted is thrown)
+/// or a crash, continues from it to the same bytes. A checkpoint of another job is discarded. If
+/// the registration is not verified, only transform.json and registration.png are written. Throws
 /// UsageError, InvalidInput, FileError, Unsupported, Interrupted.
 ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter = {});
 
 /// The files in `folder` that a run may write, the checkpoint included.
 std::vector<std::filesystem::path> reconstruction_files(const std::filesystem::path& folder);
 
-/// As the reconstruction runs with: gains that are tied are not refined, a tip that was found
-/// blindly is.
+/// The options that the reconstruction runs with: tied gains are not refined, a tip that was found
+/// blindly is refined.
 ReconstructionOptions options_of(const ReconstructJob& job, const ReconstructSummary& summary);
 
 /// "sound", "flagged" or "not registered".

@@ -20,40 +20,42 @@
 
 namespace surf::workflow {
 
-/// A scan and what is to be done to it.
+/// An AFM scan and how it is prepared.
 struct AfmInput {
   HeightField scan;
   std::filesystem::path file;
   AfmPreparationOptions preparation;
-  io::HeightReadOptions reading = {};  ///< how the file was read: of the record
+  io::HeightReadOptions reading = {};  ///< how the file was read, for the record
 };
 void describe(ParameterVisitor& visit, AfmInput& input);
 
 struct SemInput {
   PlacedImage image;
   std::filesystem::path file;
-  io::SemReadOptions reading = {};  ///< as of AfmInput
+  io::SemReadOptions reading = {};  ///< as in AfmInput
 };
 void describe(ParameterVisitor& visit, SemInput& input);
 
-/// How the two images come to lie on each other.
+/// How the two images are registered.
 struct PoseOptions {
-  std::optional<Affine> transform;      ///< SEM to AFM, known: nothing is searched for
-  std::string transform_doubt;          ///< what its file says of it where it is not verified
-  std::vector<LandmarkPair> landmarks;  ///< none: the start is searched for
-  bool landmarks_only = false;          ///< the map of the landmarks is not refined
+  std::optional<Affine> transform;  ///< known map from SEM to AFM: no search is made
+  std::string transform_doubt;      ///< the doubt stated in its file, if the map is not verified
+  std::vector<LandmarkPair> landmarks;  ///< none: the initial guess is searched for
+  bool landmarks_only = false;          ///< use the map fitted to the landmarks without refining it
   RegistrationOptions registration;
-  bool accept_unverified = false;  ///< go on with a registration that is not verified
+  bool accept_unverified = false;  ///< continue with a registration that is not verified
 };
-/// registration.objective, registration.transform and so on; not the landmarks.
+/// The parameters registration.objective, registration.transform and so on; not the landmarks.
 void describe(ParameterVisitor& visit, PoseOptions& options);
 
 struct Pose {
   Affine sem_to_afm;
   std::optional<LandmarkFit> landmarks;
-  std::optional<Registration> registration;  ///< absent: given, or by landmarks alone
-  PlacedImage
-      simulated;  ///< of the eroded scan, in the AFM's frame: what the SEM image was laid on
+  /// Absent: the map was given, or fitted to landmarks alone.
+  std::optional<Registration> registration;
+  /// SEM image predicted from the eroded scan, in the AFM's frame; the SEM image was registered to
+  /// it.
+  PlacedImage simulated;
 
   bool verified() const {
     return !registration || registration->verdict == RegistrationVerdict::verified;
@@ -66,9 +68,9 @@ struct RegisterJob {
   ModelRequest model;
   PoseOptions pose;
   int threads = 0;
-  std::filesystem::path transform;  ///< file to write, .json; or empty
-  std::filesystem::path
-      picture;  ///< both images and how they lie on each other, .png or .svg; or empty
+  std::filesystem::path transform;  ///< transform file to write, .json; or empty
+  /// Picture of both images laid on each other, .png or .svg; or empty.
+  std::filesystem::path picture;
 };
 void describe(ParameterVisitor& visit, RegisterJob& job);
 
@@ -78,13 +80,13 @@ struct RegisterSummary {
   Pose pose;
 };
 
-/// Prepares the scan, predicts the SEM image of what is left of it when the tip is taken off, at
-/// the SEM's pixel size, and registers. Files are written whatever the verdict, which they say.
-/// Throws as its steps do.
+/// Prepares the scan, predicts the SEM image of the eroded scan at the SEM's pixel size, and
+/// registers the images. Files are written for every verdict, which they state. Throws what its
+/// steps throw.
 RegisterSummary run(const RegisterJob& job, const Reporter& reporter = {});
 
-/// The predicted image of a surface at the model's pixel: the sum of its channels, valid where the
-/// surface is.
+/// The predicted image of a surface at the model's pixel size: the sum of its channels, valid where
+/// the surface is.
 PlacedImage simulated_view(const HeightField& surface, const ImageModel& model, double pixel_nm,
                            int threads);
 

@@ -9,17 +9,18 @@
 
 namespace surf::workflow {
 
-/// Is told something in words.
+/// Receives a message.
 using NoteCallback = std::function<void(const std::string& text)>;
 
-/// Who hears what a job does, and can end it. All members may be left out. They are called from the
-/// thread that runs the job, one at a time.
+/// Receives the messages and the progress of a job, and can cancel the job. All members are
+/// optional. They are called from the thread that runs the job, one at a time.
 struct Reporter {
-  std::function<void(const std::string& stage)> on_stage;  ///< "tip", "model": progress begins anew
-  /// `things` is what is counted, "primaries"; empty where only the share counts.
+  /// "tip", "model"; progress restarts at 0.
+  std::function<void(const std::string& stage)> on_stage;
+  /// `things` names what is counted, such as "primaries"; empty if only the share means something.
   std::function<void(double done, double total, std::string_view things)> on_progress;
-  NoteCallback on_note;     ///< good to know, and no mistake
-  NoteCallback on_warning;  ///< may be a mistake, and what to do about it
+  NoteCallback on_note;     ///< useful information, not a mistake
+  NoteCallback on_warning;  ///< a possible mistake, and what to do about it
   const CancelToken* cancel = nullptr;
 
   void stage(const std::string& name) const {
@@ -36,12 +37,12 @@ struct Reporter {
   }
   bool cancelled() const { return cancel && cancel->cancelled(); }
 
-  /// For library work that takes a `ProgressCallback`. Refers to this.
+  /// For library functions that take a `ProgressCallback`. The result refers to this object.
   ProgressCallback counting(std::string_view things) const {
     return [this, things](double done, double total) { progress(done, total, things); };
   }
-  /// For library work that takes a `Watch`: all of it is told as `from` to `to`, in [0, 1]. Refers
-  /// to this.
+  /// For library functions that take a `Watch`: their progress covers `from` to `to`, in [0, 1].
+  /// The result refers to this object.
   Watch watch(double from = 0, double to = 1) const {
     return Watch{[this](double done, double total) { progress(done, total); }, cancel}.part(from,
                                                                                             to);

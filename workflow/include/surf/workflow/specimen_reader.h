@@ -6,10 +6,10 @@
 
 namespace surf::workflow {
 
-/// Reads meshes to be simulated: asks first whether they fit into memory (`require_memory`). Where
-/// several processes of a machine read the same ones together, the first one reads; the others get
-/// the bodies' names and materials, and empty meshes. `each`: so many processes of this machine
-/// read on their own at the same time.
+/// Makes a reader of specimen meshes that first checks that they fit into memory
+/// (`require_memory`). If several processes of a machine read the same meshes together, the first
+/// one reads. The others get the bodies' names and materials, and empty meshes. `each` is the
+/// number of processes on this machine that read on their own at the same time.
 io::BodyReader specimen_reader(NodeMemory* node = nullptr, int each = 1);
 
 }  // namespace surf::workflow

@@ -10,14 +10,13 @@
 
 namespace surf::workflow {
 
-/// What a result says of how it was made: the version, the step's name, its parameters as
-/// `option.NAME`, and its input files with their hashes. Throws FileError where an input cannot be
-/// read.
+/// The provenance of a result: the version, the step's name, its parameters as `option.NAME`, and
+/// its input files with their hashes. Throws FileError if an input cannot be read.
 std::map<std::string, std::string> step_record(
     const std::string& step, const Record& parameters,
     const std::vector<std::filesystem::path>& inputs = {});
 
-/// The records of several structs of parameters as one.
+/// Merges the records of several parameter structs.
 template <class... Struct>
 Record records_of(const Struct&... of) {
   Record all;

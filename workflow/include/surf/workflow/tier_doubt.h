@@ -9,9 +9,9 @@
 
 namespace surf::workflow {
 
-/// Whether the tier `inelastic=monsel` is good enough for an accuracy (> 0), in a sentence: by how
-/// much its images differ from those of `inelastic=dielectric` after the best gain, at 1 keV
-/// (docs/methods/dielectric.md). Nothing with that tier itself.
+/// States in a sentence whether the tier `inelastic=monsel` is good enough for an accuracy (> 0):
+/// by how much its images differ from those of `inelastic=dielectric` after the best gain, at 1 keV
+/// (docs/methods/dielectric.md). Returns nothing for the tier `inelastic=dielectric`.
 std::optional<std::string> tier_doubt(const mc::Physics& physics, std::size_t materials,
                                       double accuracy);
 

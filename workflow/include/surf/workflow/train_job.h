@@ -24,122 +24,123 @@
 
 namespace surf::workflow {
 
-/// A surface to learn on.
+/// A surface to train on.
 struct TrainingInput {
-  std::string name;    ///< for messages and the record, as "scan.gwy"
-  HeightField field;   ///< of any pitch up to twice the model's pixel
-  std::string sha256;  ///< of its file; empty: of its heights
-  /// The image of it, in a file or as it is. Neither: it is simulated.
+  std::string name;    ///< for messages and the record, such as "scan.gwy"
+  HeightField field;   ///< any pitch up to twice the model's pixel size
+  std::string sha256;  ///< hash of its file; empty: of its heights
+  /// Its image, in a file or in memory. If both are empty, the image is simulated.
   std::filesystem::path image;
   std::shared_ptr<const Image> pixels = nullptr;
 
   bool has_image() const { return !image.empty() || pixels; }
 };
 
-/// The samples per pixel that a job simulates with: its own, or by the range of Kanaya and Okayama.
+/// The samples per pixel that a job simulates with: `fine`, or a number from the range of Kanaya
+/// and Okayama.
 int samples_per_pixel(const struct TrainJob& job);
 
-/// What learning is told besides surfaces and images. Each kind of model takes what concerns it.
+/// Options of learning, besides surfaces and images. Each kind of model uses those that concern it.
 struct LearnOptions {
-  /// Kinds as `learnable_kinds` lists them.
+  /// A kind from `learnable_kinds`.
   std::string kind = "facet-network";
-  /// Of a filter bank or a facet network; empty: the thesis's ten, of a network those within the
-  /// electrons' range.
+  /// For a filter bank or a facet network; empty: the thesis's ten scales, for a network those
+  /// within the electrons' range.
   std::vector<FacetScale> scales;
   bool multi_resolution = false;  ///< see FilterBankParameters
-  std::optional<double>
-      least_eigenvalue;  ///< of a filter bank: components of smaller ones are left out
-  std::optional<std::vector<int>>
-      hidden;  ///< of a facet network, this and the next: see FacetNetworkFitOptions
+  /// For a filter bank: components with smaller eigenvalues are left out.
+  std::optional<double> least_eigenvalue;
+  /// For a facet network, like the next two: see FacetNetworkFitOptions.
+  std::optional<std::vector<int>> hidden;
   std::optional<int> iterations;
-  std::optional<double> decay, model_error;  ///< `tolerance` of FacetNetworkFitOptions
-  /// Primaries that a table is made of: at each angle of slopes (31000), or in all (10240, rounded
-  /// up to pages of a library of cascades).
+  /// `model_error` is the `tolerance` of FacetNetworkFitOptions.
+  std::optional<double> decay, model_error;
+  /// Primaries of a table: at each angle of slopes (default 31000), or in total (default 10240,
+  /// rounded up to pages of a library of cascades).
   std::optional<std::int64_t> table_electrons;
 };
-/// training.kind, training.scales and so on.
+/// The parameters training.kind, training.scales and so on.
 void describe(ParameterVisitor& visit, LearnOptions& learn);
 
-/// A kind of model that can be learnt, for people.
+/// A kind of model that can be trained.
 struct LearnableKind {
-  std::string name;          ///< as the command line takes it
+  std::string name;          ///< as in the option
   std::string what;          ///< one line, no full stop
-  bool needs_images = true;  ///< else images only judge it
+  bool needs_images = true;  ///< false: images only judge it
 };
 std::vector<LearnableKind> learnable_kinds();
 
-/// How missing images are simulated, where nothing else is said.
+/// Default options of the simulation of missing images.
 inline mc::SimulationOptions training_simulation() {
   mc::SimulationOptions options;
   options.budget = mc::ElectronsPerPixel{150};
   return options;
 }
 
-/// A model from surfaces to its file.
+/// Trains a model on surfaces and writes it to a file.
 struct TrainJob {
-  std::vector<TrainingInput>
-      inputs;                   ///< none: `surfaces` of the program's own (training_surfaces.h)
-  std::optional<int> surfaces;  ///< absent: 60, or none for kinds that need no images
+  std::vector<TrainingInput> inputs;  ///< None: `surfaces` generated ones (training_surfaces.h)
+  /// Number of generated surfaces; absent: 60, or none for kinds that need no images.
+  std::optional<int> surfaces;
   int surface_px = 64;
-  Edge edge = Edge::mirror;  ///< how surfaces go on outside
-  /// Surfaces are simulated with so many samples per pixel, smooth between them, 1 to 8: what lies
-  /// within a pixel counts where pixels are not small against the electrons' range. 0: so many that
-  /// samples are at most a fifth of it apart.
+  Edge edge = Edge::mirror;  ///< how surfaces continue outside
+  /// Samples per pixel in the simulated surfaces, smooth between them, 1 to 8: details within a
+  /// pixel matter if pixels are not small compared with the electrons' range. 0: chosen so that
+  /// samples are at most a fifth of the range apart.
   int fine = 0;
-  int held_out = 0;  ///< the last so many surfaces only judge the model
+  int held_out = 0;  ///< the last surfaces, this many, only judge the model
 
-  /// The images are of a real microscope, in one channel of this name, in any unit; empty: they are
-  /// as `simulate` writes them, with SE, BSE and, where they are there, SE.stderr and BSE.stderr.
+  /// If not empty: the images are from a real microscope, in one channel of this name, in any unit.
+  /// Empty: they are as written by `simulate`, with SE, BSE and optionally SE.stderr and
+  /// BSE.stderr.
   std::string signal;
 
-  double pixel_nm = 0;  ///< of the model, > 0
+  double pixel_nm = 0;  ///< pixel size of the model, > 0
   mc::Material material;
   double energy_ev = 1000, spot_nm = 0;
   mc::Physics physics;
-  /// Electrons or accuracy, seed and threads; each image has a seed of its own, counted on from
-  /// this.
+  /// Electrons or accuracy, seed and threads. Each image has its own seed, counted on from this
+  /// one.
   mc::SimulationOptions simulation = training_simulation();
   std::filesystem::path cache;  ///< as in SimulateJob
   LearnOptions learn;
-  std::filesystem::path output;  ///< the model, .json
-  /// Folder of the simulated images, which trainings of other kinds may share; empty: NAME.training
+  std::filesystem::path output;  ///< the model file, .json
+  /// Folder of the simulated images, which trainings of other kinds may share. Empty: NAME.training
   /// beside NAME.json.
   std::filesystem::path images;
-  // Of the record alone:
-  io::HeightReadOptions reading;  ///< how the files of `inputs` were read
-  std::vector<std::filesystem::path>
-      material_files;  ///< where materials of one's own were looked for
+  // For the record alone:
+  io::HeightReadOptions reading;                      ///< how the files of `inputs` were read
+  std::vector<std::filesystem::path> material_files;  ///< files of the user's own materials
 };
-/// The options of learning, training.surfaces and so on, scan.height_unit and so on, and of the
-/// simulation what a model is for and how much is simulated.
+/// The options of learning; training.surfaces and so on; scan.height_unit and so on; and the
+/// parameters of the simulation that say what the model is for and how much is simulated.
 void describe(ParameterVisitor& visit, TrainJob& job);
 
-/// The command that trains the same model, without folders of files: of the record.
+/// The command that trains the same model, with file names without folders, for the record.
 std::string training_command(const TrainJob& job);
 
 struct TrainSummary {
-  bool complete = true;  ///< false when cancelled: there is no model yet
+  bool complete = true;  ///< false if cancelled: there is no model yet
   TrainedModel model;
-  int images_found = 0;  ///< of the simulated ones, there before
+  int images_found = 0;  ///< simulated images from earlier jobs
   int images_made = 0;
-  std::filesystem::path images;  ///< the folder that they are in; empty if none were simulated
-  std::vector<std::filesystem::path> written;  ///< the model, and the record of a team
+  std::filesystem::path images;  ///< folder of the simulated images; empty if there are none
+  std::vector<std::filesystem::path> written;  ///< the model, and the record of the team
 };
 
-/// Checks everything that can be wrong before time is spent, makes the images that are not given,
-/// learns the model, judges it on every surface, and writes it. A simulated image is
-/// NAME.training/SURFACE.exr beside NAME.json, with its heights in channel z_nm; one that is there
-/// already, of the same surface and settings and made by the same program, is used again, and one
-/// that was interrupted is gone on with. So the same job, started again, goes on to the same bytes.
-/// Kinds that need no images are made from the material, the energy and the physics: what surfaces
-/// there are only judge them, all as held out.
+/// Checks everything that can be wrong before time is spent, makes the missing images, trains the
+/// model, judges it on every surface, and writes it. A simulated image is NAME.training/SURFACE.exr
+/// beside NAME.json, with its heights in channel z_nm. An existing image of the same surface and
+/// settings, made by the same program, is used again; an interrupted one is continued. So the same
+/// job, started again, continues to the same bytes. Kinds that need no images are made from the
+/// material, the energy and the physics. Surfaces then only judge the model, all as held out.
 ///
-/// Surfaces of another pitch are resampled to `pixel_nm` by bilinear interpolation, which is noted.
+/// Surfaces of another pitch are resampled to `pixel_nm` by bilinear interpolation, with a note.
 /// Throws UsageError, InvalidInput (also for surfaces more than twice as coarse), FileError.
 ///
-/// With a `team` all of it call this with the same job, and simulate images, whole ones, into a
-/// folder that all see; the leader learns, while the others wait, and tells in NAME.run.json who
-/// did how much. Bytes are those of one process.
+/// With a `team` all members call this with the same job, and each simulates whole images into a
+/// folder that all members see. The leader trains while the others wait, and records in
+/// NAME.run.json how much each member did. The bytes are the same as with one process.
 TrainSummary run(const TrainJob& job, const Reporter& reporter = {}, Team* team = nullptr);
 
 }  // namespace surf::workflow

@@ -11,15 +11,15 @@
 
 namespace surf::workflow {
 
-/// Tracks of primaries that land in one pixel, to look at.
+/// Tracks of primaries that land in one pixel, for viewing.
 struct Trajectories {
-  std::vector<Track> tracks;  ///< in the order in which they were followed
-  double inside_nm = 0;       ///< longest side of the box around what primaries do inside matter
-  double exit_nm = 0;         ///< how far electrons that leave are followed
+  std::vector<Track> tracks;  ///< in the order of simulation
+  double inside_nm = 0;       ///< longest side of the box around the primaries' paths inside matter
+  double exit_nm = 0;         ///< distance to which leaving electrons are followed
 };
 
-/// Simulates `primaries` (>= 1) electrons at a place of the scan plane, nm; absent: in the middle
-/// of the scan. Throws UsageError for a place outside the scan.
+/// Simulates `primaries` (>= 1) electrons at a place in the scan plane, nm; absent: the middle of
+/// the scan. Throws UsageError for a place outside the scan.
 Trajectories record_trajectories(const mc::Scene& scene, std::uint64_t seed, int primaries,
                                  const std::optional<std::pair<double, double>>& at_nm = {});
 

@@ -5,10 +5,10 @@
 
 namespace surf::workflow {
 
-/// semsurf's own version, as "0.1.0".
+/// The version of semsurf, as "0.1.0".
 std::string version();
 
-/// Names and versions of the libraries at work in this program, separated by ", ".
+/// Names and versions of the libraries in use, separated by ", ".
 std::string library_versions();
 
 }  // namespace surf::workflow

@@ -13,33 +13,33 @@
 
 namespace surf::io {
 
-/// A body of a mesh file, made of one of semsurf's materials.
+/// A body of a mesh file with one of semsurf's materials.
 struct MeshBody {
   std::string name;
-  std::string file_material;  ///< what the file calls its material; empty where it says nothing
-  std::string material;       ///< semsurf's
-  bool is_default = false;    ///< whether the default was taken, as the file's name means nothing
+  std::string file_material;  ///< as the file calls it; empty if the file names none
+  std::string material;       ///< name of semsurf's material
+  bool is_default = false;    ///< the default was taken: the file's name is unknown or empty
   TriangleMesh mesh;
-  bool unit_assumed = false;  ///< as of NamedMesh
+  bool unit_assumed = false;  ///< as in NamedMesh
 };
 
-/// What the names of materials in mesh files mean.
+/// How the names of materials in mesh files are translated.
 struct MaterialNames {
-  std::string fallback = "Si";  ///< for bodies without a material or of an unknown one
-  std::map<std::string, std::string> meaning;  ///< the file's name to semsurf's; comes first
-  std::string subject = "materials";           ///< what messages name: an option or a place
+  std::string fallback = "Si";  ///< for bodies without a material or with an unknown one
+  std::map<std::string, std::string> meaning;  ///< file's name to semsurf's name; takes precedence
+  std::string subject = "materials";           ///< the name used in messages: an option or a place
 };
 
-/// Reads the bodies of a mesh file (see `read_meshes`) and gives each a material: what `meaning`
-/// says of the file's name, else that name itself where `library` has such a material, else the
+/// Reads the bodies of a mesh file (see `read_meshes`) and gives each a material: the one that
+/// `meaning` assigns to the file's name, else the material of that name in `library`, else the
 /// default. Open pieces of one name and material are joined, so that a closed body painted in
-/// several colours is one again. Throws what `read_meshes` and `library.find` throw, and UsageError
-/// for a name in `meaning` that the file does not use.
+/// several colours becomes one body again. Throws what `read_meshes` and `library.find` throw, and
+/// UsageError for a name in `meaning` that the file does not use.
 std::vector<MeshBody> read_mesh_bodies(const std::filesystem::path& path, const MeshUnit& unit,
                                        const MaterialNames& names,
                                        const MaterialLibrary& library = {});
 
-/// `read_mesh_bodies`, or what does its work.
+/// `read_mesh_bodies` or a function that replaces it.
 using BodyReader = std::function<std::vector<MeshBody>(
     const std::filesystem::path& path, const MeshUnit& unit, const MaterialNames& names,
     const MaterialLibrary& library)>;

@@ -12,31 +12,34 @@
 
 namespace surf::io {
 
-/// A request and where it came from: a scene file, or a command line that names meshes.
+/// A simulation request and its origin: a scene file, or a command line that names meshes.
 struct SceneFile : mc::SimulationRequest {
-  bool unit_assumed = false;  ///< of a mesh: neither its file nor the user said the unit
-  MaterialLibrary materials;  ///< built-in ones, the scene's own, those of files
-  /// Mesh files whose own unit does not count, by name, and the nm of the unit that does.
+  bool unit_assumed = false;  ///< the unit of a mesh is stated neither by its file nor by the user
+  MaterialLibrary materials;  ///< the built-in ones, the scene's own, those of material files
+  /// Mesh files whose stated unit is overridden: the file's name, and the unit in nm that is used
+  /// instead.
   std::vector<std::pair<std::string, double>> unit_overrides;
-  std::vector<std::filesystem::path> inputs;  ///< files read: the scene itself, then the others
-  std::vector<std::string> notes;             ///< what the user may want to know
+  /// Files that were read: the scene itself, then the others.
+  std::vector<std::filesystem::path> inputs;
+  std::vector<std::string> notes;  ///< notes for the user
 };
 
 /// Reads a scene in TOML. Paths in it are relative to the scene file. Unknown keys are errors, with
-/// the nearest known key suggested. Throws FileError with line and column, UsageError for values.
-/// Lengths, energies and angles are numbers (nm, eV, degrees) or texts with a unit; several lengths
-/// are an array or a text with commas. The tables [beam], [scan] and [simulation] hold the
+/// the nearest known key suggested. Throws FileError with line and column, UsageError for wrong
+/// values. Lengths, energies and angles are numbers (nm, eV, degrees) or texts with a unit; several
+/// lengths are an array or a text with commas. The tables [beam], [scan] and [simulation] hold the
 /// parameters of `mc::SimulationRequest`, as `describe` names them; docs/reference/scene_files.md
 /// lists all keys.
 ///
-/// `material_files` are read as well; what they say goes before the scene's own materials. `read`
-/// reads the mesh files.
+/// `material_files` are read as well; their materials override the scene's own. `read` reads the
+/// mesh files.
 SceneFile read_scene(const std::filesystem::path& path,
                      const std::vector<std::filesystem::path>& material_files = {},
                      const BodyReader& read = read_mesh_bodies);
 
-/// The scene and the files that it names, with those that are read with them (`files_read_with`);
-/// nothing but the scene is read whole. Throws what `read_scene` would for a file that is no TOML.
+/// Lists the scene and the files that it names, with those that are read with them
+/// (`files_read_with`). Only the scene itself is read in full. Throws what `read_scene` would throw
+/// for a file that is not TOML.
 std::vector<std::filesystem::path> scene_input_files(const std::filesystem::path& path);
 
 /// Whether the name ends in ".toml".

@@ -16,24 +16,24 @@ class ParameterVisitor;
 
 namespace surf::io {
 
-/// Which files make a specimen, and what they do not say themselves: one scene file, or meshes and
-/// at most one height field.
+/// The files that make a specimen, and the settings that they do not state: one scene file, or
+/// meshes and at most one height field.
 struct SpecimenRequest {
   std::vector<std::string> inputs;
-  std::optional<std::string> material;      ///< absent: Si, which is noted
-  std::vector<std::string> material_files;  ///< materials of the user's own, TOML
+  std::optional<std::string> material;      ///< absent: Si, and a note says so
+  std::vector<std::string> material_files;  ///< the user's own materials, TOML
   std::optional<double> mesh_unit_nm;       ///< > 0; see MeshUnit
   bool override_unit = false;
   std::optional<std::string> substrate;  ///< a material; absent: none, or the scene file's
   std::optional<double> substrate_z_nm;  ///< absent: 0, or the scene file's
   std::optional<Edge> edge;              ///< absent: mirror, or the scene file's
-  HeightReadOptions heights;  ///< how a height field is read; its pitch is in place of the file's
+  HeightReadOptions heights;  ///< How a height field is read. This pitch replaces the file's.
 };
 
 void describe(ParameterVisitor& visit, SpecimenRequest& request);
 
-/// Reads it all: the scene file with what is said here in place of what it says, or a scene of
-/// default settings. What had to be assumed is in the scene's notes. Meshes are read by `read`.
+/// Reads the whole specimen: the scene file with the settings here in place of its own, or a scene
+/// with default settings. Assumptions are listed in the scene's notes. `read` reads the meshes.
 /// Throws UsageError, FileError, InvalidInput.
 SceneFile read_specimen(const SpecimenRequest& request, const BodyReader& read = read_mesh_bodies);
 
