@@ -4,17 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "surf/afm/background.h"
 #include "surf/afm/height_range.h"
 #include "surf/afm/hough_plane.h"
 #include "surf/afm/morphology.h"
-#include "surf/afm/noise_check.h"
-#include "surf/afm/round_tip.h"
+#include "surf/afm/round_tip_search.h"
 #include "surf/afm/substrate_noise.h"
-#include "surf/afm/tip_doubt.h"
-#include "surf/afm/tip_sweep.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/workflow/morphology_job.h"
@@ -22,13 +18,6 @@
 
 namespace surf::workflow {
 namespace {
-
-constexpr int tip_sizes[] = {5, 7, 9, 11, 13, 19, 27, 39, 57};
-constexpr int enough = 9;              // tips up to this size are always tried
-constexpr double told_share = 0.1;     // share of the directions that bound a round tip
-constexpr double told_deviations = 3;  // noise deviations: a shallower tip is explained by noise
-constexpr double ground_correlation = 0.5;  // of whitened neighbours in adjacent rows
-constexpr double noise_span = 6;  // range of heights due to noise, in its standard deviations
 
 /// A reporter that stores the messages of a step.
 Reporter keeping(PreparedAfm& prepared, const Watch& watch) {
@@ -58,16 +47,6 @@ void level_scan(PreparedAfm& prepared, const HeightField& scan, const AfmPrepara
   prepared.image = std::move(levelled.field);
 }
 
-/// Whether the "substrate" is rough ground: unlike noise, rough ground is correlated from row to
-/// row.
-bool is_ground(const SubstrateNoise& found) {
-  const Grid<double> white = whiten(found.residual_nm, found.estimate.noise, found.substrate);
-  NoiseCheckOptions options;
-  options.lags = 1;
-  const NoiseCheck check = check_noise(white, found.substrate, options);
-  return !check.across.empty() && check.across.front().correlation > ground_correlation;
-}
-
 void find_noise(PreparedAfm& prepared, const AfmPreparationOptions& o) {
   if (o.noise) {
     validate(*o.noise, "`scan.height_noise`");
@@ -77,7 +56,7 @@ void find_noise(PreparedAfm& prepared, const AfmPreparationOptions& o) {
   FlatNoiseOptions flat;
   flat.watch = o.watch.part(0.1, 0.15);
   const SubstrateNoise substrate = estimate_substrate_noise(prepared.image, flat);
-  const bool clear = substrate.plane.verdict == HoughVerdict::clear && !is_ground(substrate);
+  const bool clear = substrate.plane.verdict == HoughVerdict::clear && !is_rough_ground(substrate);
   const NoiseEstimate estimate = clear ? substrate.estimate : estimate_noise(prepared.image);
   prepared.noise = estimate.noise;
   prepared.noise_estimate = estimate;
@@ -91,23 +70,6 @@ void find_noise(PreparedAfm& prepared, const AfmPreparationOptions& o) {
   if (!clear)
     tell_noise_doubts(prepared.noise, estimate.alpha_at_limit, prepared.image,
                       keeping(prepared, {}));
-}
-
-BlindTipOptions blind_options(int size, int threads) {
-  BlindTipOptions blind;
-  blind.width = blind.height = size;
-  blind.threads = threads;
-  return blind;
-}
-
-TipSweep swept(const HeightField& image, const AfmNoise& noise, int size,
-               const AfmPreparationOptions& o, const Watch& watch) {
-  TipSweepOptions sweep;
-  sweep.blind = blind_options(size, o.threads);
-  sweep.noise = noise;
-  sweep.seed = o.seed;
-  sweep.watch = watch;
-  return sweep_tips({image}, sweep);
 }
 
 void find_free_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const Watch& watch) {
@@ -125,54 +87,23 @@ void find_free_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const 
                                        format_length(prepared.tip_threshold_nm)));
 }
 
-void find_round_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const Watch& watch) {
-  const HeightField& image = prepared.image;
-  const int shorter = std::min(image.z_nm.width(), image.z_nm.height());
-  const double relief =
-      height_range({&image, 1}).span_nm() - noise_span * std::sqrt(prepared.noise.variance_nm2());
-  if (!(relief > 0))
-    throw InvalidInput("AFM scan",
-                       "its relief is no higher than its noise, so it tells nothing of the tip",
-                       "Give `reconstruction.tip`, or another scan");
-  std::vector<std::vector<double>> told;
-  int widest = 0;
-  std::string doubt;  // empty if the sweep of any size has no doubt
-  constexpr auto sizes = static_cast<double>(std::size(tip_sizes));
-  for (std::size_t i = 0; i < std::size(tip_sizes); ++i) {
-    const int size = tip_sizes[i];
-    if (size > (told.empty() ? shorter : shorter / 3)) break;
-    const TipSweep found =
-        swept(image, prepared.noise, size, o, watch.part(double(i) / sizes, double(i + 1) / sizes));
-    const SweptTip& chosen = found.curve[found.chosen];
-    if (told.empty() || !doubt.empty()) doubt = doubt_of_sweep(found);
-    widest = size;
-    prepared.tip_threshold_nm = chosen.threshold_nm;
-    told.push_back(round_profile_nm(chosen.tip, told_share));
-    prepared.tip = tip_below(told, image.pitch_x_nm, image.pitch_y_nm, relief, shorter / 2);
-    if (size >= enough &&
-        std::max(prepared.tip.z_nm.width(), prepared.tip.z_nm.height()) <= size + 2)
-      break;
-  }
-  if (told.empty())
-    throw InvalidInput("AFM scan",
-                       fmt::format("it has {} x {} samples, too few to find a tip in",
-                                   image.z_nm.width(), image.z_nm.height()),
-                       "Give `reconstruction.tip`");
+void search_round_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, const Watch& watch) {
+  RoundTip found = find_round_tip(
+      prepared.image,
+      {.noise = prepared.noise, .seed = o.seed, .threads = o.threads, .watch = watch});
+  prepared.tip = std::move(found.tip);
+  prepared.tip_threshold_nm = found.summary.threshold_nm;
   prepared.tip_round = true;
-  const double noise = told_deviations * std::sqrt(prepared.noise.variance_nm2());
-  if (std::ranges::none_of(told, [&](const auto& profile) { return profile.back() < -noise; })) {
-    prepared.tip = {image.pitch(), Grid<double>(1, 1), 0, 0};
+  if (!found.summary.bounded) {
     prepared.warnings.push_back(
         "the scan tells nothing of its tip, which is taken as sharp, so that the scan is the "
-        "surface. "
-        "Give `reconstruction.tip` if you know it");
+        "surface. Give `reconstruction.tip` if you know it");
     return;
   }
-  prepared.tip.doubt = doubt;
   tell_tip_doubt(prepared.tip, keeping(prepared, watch));
   prepared.notes.push_back(
       fmt::format("round tip of {} x {} samples, from what blind ones of up to {} samples tell",
-                  prepared.tip.z_nm.width(), prepared.tip.z_nm.height(), widest));
+                  prepared.tip.z_nm.width(), prepared.tip.z_nm.height(), found.summary.widest));
 }
 
 Tip meeting(const Tip& tip, PreparedAfm& prepared) {
@@ -192,7 +123,7 @@ void choose_tip(PreparedAfm& prepared, const AfmPreparationOptions& o) {
   } else if (o.tip_size) {
     find_free_tip(prepared, o, watch);
   } else {
-    find_round_tip(prepared, o, watch);
+    search_round_tip(prepared, o, watch);
   }
 }
 

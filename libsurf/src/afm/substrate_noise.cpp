@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "afm/samples.h"
+#include "surf/afm/noise_check.h"
 
 namespace surf {
 namespace {
@@ -12,6 +13,7 @@ namespace {
 constexpr double deviations = 4;
 constexpr double most_tolerances = 3;
 constexpr int most_turns = 20;
+constexpr double ground_correlation = 0.5;
 
 /// Marks the samples within `limit` of 0 and returns their root mean square.
 double mark(const HeightField& residual, const Mask& use, double limit, Mask& mask) {
@@ -54,6 +56,14 @@ SubstrateNoise estimate_substrate_noise(const HeightField& field, const FlatNois
   }
   out.substrate_share = static_cast<double>(out.estimate.samples) / static_cast<double>(samples);
   return out;
+}
+
+bool is_rough_ground(const SubstrateNoise& found) {
+  const Grid<double> white = whiten(found.residual_nm, found.estimate.noise, found.substrate);
+  NoiseCheckOptions options;
+  options.lags = 1;
+  const NoiseCheck check = check_noise(white, found.substrate, options);
+  return !check.across.empty() && check.across.front().correlation > ground_correlation;
 }
 
 }  // namespace surf

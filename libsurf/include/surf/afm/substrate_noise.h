@@ -25,4 +25,8 @@ struct SubstrateNoise {
 SubstrateNoise estimate_substrate_noise(const HeightField& field,
                                         const FlatNoiseOptions& options = {}, const Mask& use = {});
 
+/// Whether the "substrate" is rough ground: unlike noise, rough ground is correlated from row to
+/// row (whitened neighbours in adjacent rows by more than 0.5).
+bool is_rough_ground(const SubstrateNoise& found);
+
 }  // namespace surf
