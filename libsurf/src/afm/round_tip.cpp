@@ -82,7 +82,7 @@ Tip tip_below(const std::vector<std::vector<double>>& profiles, double pitch_x, 
   };
   const auto beyond = [&] {
     return z.size() > 1 ? 2 * z.back() - z[z.size() - 2] : 0.0;
-  };  // no less steep
+  };  // at least as steep as before
   while (z.back() > -depth && z.size() <= static_cast<std::size_t>(most_samples) &&
          (z.size() < told || z.back() < 0))
     z.push_back(std::min(bound(z.size()), beyond()));

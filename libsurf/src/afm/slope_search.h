@@ -26,7 +26,7 @@ struct SlopeSearch {
   double largest_slope = 1;  // nm from the centre to the edge: of |a| and |b|
   double slack = 0;          // share of votes by which a better plane may be missed
   std::size_t limit = 1;     // planes to count at most
-  Watch watch;               // its token alone
+  Watch watch;               // for cancellation only
 };
 
 /// Finds the plane with most votes within the tolerance. The tolerance is exact to the height of a

@@ -17,7 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace surf::reconstruction::HWY_NAMESPACE {
 
-// What a tip sample adds to a row of the surface, where that is higher than what was found before.
+// Updates a row of the dilation by one tip sample, where it gives a higher value.
 void raise(float* __restrict made, std::int32_t* __restrict touching,
            const float* __restrict surface, float offset, std::int32_t sample, int count) {
   for (int x = 0; x < count; ++x) {
@@ -79,7 +79,7 @@ void AfmTerm::set_outside(const HeightField& outside) {
   outside_ = smoothly_upsampled(outside, factor_).z_nm;
 }
 
-/// From the AFM's frame to samples of the surface.
+/// The map from the AFM's frame to samples of the surface.
 Affine AfmTerm::to_samples(const Affine& surface_to_afm) const {
   const double f = 1 / frame_.pitch_nm;
   return compose({f, 0, -frame_.origin_x_nm * f, 0, f, -frame_.origin_y_nm * f},
@@ -116,15 +116,16 @@ AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to
   const int f = factor_, tw = tip.z_nm.width(), th = tip.z_nm.height();
   const double step_x = image_.pitch_x_nm / f, step_y = image_.pitch_y_nm / f;
 
-  // Fine samples that the tip can reach from the used pixels: columns [begin, begin + f plane),
-  // rows likewise. Tip sample i lies over surface column f x - (i - apex), so the surface's reach
-  // is the tip's, turned round.
+  // The fine samples that the tip can reach from the used pixels: columns [begin, begin + f plane),
+  // rows likewise. Tip sample i lies over surface column f x - (i - apex), so the reach is that of
+  // the rotated tip.
   int first_column = w, last_column = -1;
   for (const auto& span : spans_) {
     first_column = std::min(first_column, span[0]);
     last_column = std::max(last_column, span[1]);
   }
-  const int right_of = tip.apex_x, left_of = tw - 1 - tip.apex_x;  // of a pixel, in fine samples
+  const int right_of = tip.apex_x,
+            left_of = tw - 1 - tip.apex_x;  // reach from a pixel, in fine samples
   const int above = tip.apex_y, below = th - 1 - tip.apex_y;
   const int first_plane = floor_div(f * first_column - left_of, f),
             last_plane = floor_div(f * last_column + right_of, f);
@@ -139,12 +140,12 @@ AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to
   for (int y = first_row_; y <= last_row_; ++y)
     for (int x = spans_[y][0]; x <= spans_[y][1]; ++x)
       if (used_(x, y)) sum += image_.z_nm(x, y);
-  const double middle =
-      sum / static_cast<double>(used_pixels_);  // so that floats hold small numbers
+  // Floats store small numbers relative to it.
+  const double middle = sum / static_cast<double>(used_pixels_);
   std::vector<float> lowest(rows, std::numeric_limits<float>::infinity()), highest(rows, deepest);
   parallel_for(rows, threads_, [&](std::size_t r, int) {
     const int row = static_cast<int>(r), global_row = begin_row + row;
-    // The pixels that reach this row, and so the columns that matter.
+    // The pixels that reach this row determine the columns needed.
     const int from = std::max(first_row_, floor_div(global_row - above + f - 1, f));
     const int to = std::min(last_row_, floor_div(global_row + below, f));
     int left = std::numeric_limits<int>::max(), right = std::numeric_limits<int>::min();
@@ -188,7 +189,8 @@ AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to
       const int row = f * y - (j - tip.apex_y) - begin_row;
       for (int k = 0; k < tw; ++k) {
         const float offset = static_cast<float>(tip.z_nm(k, j));
-        // So deep that even the highest of the row stays below what the apex makes of the lowest.
+        // Skips a tip sample so deep that even the highest surface sample of the row stays below
+        // the contact of the apex with the lowest one.
         if (offset + highest[row] < floor) continue;
         const int column = f * left - (k - tip.apex_x) - f * first_plane;
         HWY_DYNAMIC_DISPATCH(raise)
@@ -218,7 +220,8 @@ AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to
     }
   });
   s.value = -log_likelihood(s.residual, noise_, used_, &s.pull);
-  // d(-log p)/d simulated = d(log p)/d residual: the residual falls as the simulated pixel rises.
+  // The sign of `pull` is right: d(-log p)/d simulated = d(log p)/d residual, because the residual
+  // falls as the simulated pixel rises.
   return s;
 }
 

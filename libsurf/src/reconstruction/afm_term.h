@@ -11,21 +11,23 @@
 
 namespace surf::reconstruction {
 
-/// Where the tip touches for one AFM pixel.
+/// The contact of the tip for one AFM pixel.
 struct Contact {
-  double x = 0, y = 0;      ///< surface samples
-  std::uint8_t inside = 0;  ///< 0: it touches outside of the surface, which no height changes
-  double from_middle_x = 0, from_middle_y = 0;  ///< of the contact, in reaches: see MapChange
-  std::int32_t tip_sample =
-      -1;  ///< which of the tip's, row-major; -1: none, as for pixels that play no part
+  double x = 0, y = 0;  ///< surface samples
+  /// 0: the contact is outside the surface, and no height changes it.
+  std::uint8_t inside = 0;
+  /// Place of the contact, in units of the reach: see MapChange.
+  double from_middle_x = 0, from_middle_y = 0;
+  /// Row-major index of the tip's sample; -1: none, as for unused pixels.
+  std::int32_t tip_sample = -1;
 };
 
-/// The scan, given a surface: dilation of its samples by the tip, and the negative log-likelihood
-/// of what is left (thesis, 9.2.1), without constants.
+/// The likelihood of the scan, given a surface: dilation of the surface's samples by the tip, and
+/// the negative log-likelihood of the residual (thesis, 9.2.1), without constants.
 class AfmTerm {
  public:
-  /// `outside`: heights on the AFM's samples, as of the eroded scan, that stand where the surface
-  /// does not reach. AFM pixels that lie on the surface, by `surface_to_afm`, play a part.
+  /// `outside`: heights on the AFM's samples, for example the eroded scan, that are used beyond the
+  /// surface. AFM pixels that lie on the surface, according to `surface_to_afm`, contribute.
   AfmTerm(const AfmData& data, const HeightField& outside, const SurfaceFrame& frame,
           const Affine& surface_to_afm, int threads);
 
@@ -34,29 +36,31 @@ class AfmTerm {
     Grid<double> residual;   ///< image - simulated, 0 where not used
     Grid<double> pull;       ///< derivative of the term by each simulated pixel
     std::vector<Contact> contacts;
-    std::vector<TipChange> by_tip;  ///< derivatives of the tip's samples
+    std::vector<TipChange> by_tip;  ///< derivatives of the tip's samples by TipChange
     double value = 0;
   };
 
   State evaluate(const Grid<double>& z_nm, const Affine& surface_to_afm,
                  const TipChange& tip = {}) const;
 
-  /// The transpose: out += J^T w for pixels' weights w; `map` and `tip` get the derivatives by
-  /// these, if given.
+  /// The vector-Jacobian product: out += J^T w for weights w of pixels. If `map` and `tip` are
+  /// given, the derivatives by them are added.
   void add_gradient(const State& state, const Grid<double>& z_nm, const Grid<double>& weights,
                     Grid<double>& out, MapChange* map, TipChange* tip = nullptr) const;
-  /// J (dz, map, tip).
+  /// The Jacobian-vector product J (dz, map, tip).
   Grid<double> change(const State& state, const Grid<double>& z_nm, const Grid<double>& dz_nm,
                       const MapChange& map, const TipChange& tip = {}) const;
-  /// The precision of the noise times v: what the second derivative by the simulated pixels is.
+  /// The precision of the noise times v; the precision is the second derivative by the simulated
+  /// pixels.
   Grid<double> precision(const Grid<double>& v) const;
 
   Affine moved(const Affine& surface_to_afm, const MapChange& change) const;
 
   bool tip_can_change() const { return family_.can_change(); }
-  /// The tip on the scan's samples.
+  /// The changed tip on the scan's samples.
   Tip tip(const TipChange& change) const { return family_.changed(first_tip_, change); }
-  /// Heights beyond the surface, as for the constructor: those of the scan eroded by another tip.
+  /// Replaces the heights beyond the surface (see the constructor), as by those of the scan eroded
+  /// by another tip.
   void set_outside(const HeightField& outside);
 
   const Mask& used() const { return used_; }
@@ -69,14 +73,14 @@ class AfmTerm {
   HeightField image_;
   AfmNoise noise_;
   Tip first_tip_;  // on the scan's samples
-  Tip tip_;        // the same on the fine ones
+  Tip tip_;        // the tip on the fine samples
   TipFamily family_;
   int factor_;
   SurfaceFrame frame_;
   Grid<double> outside_;  // on the fine samples
   Mask used_;
   std::int64_t used_pixels_ = 0;
-  int first_row_ = 0, last_row_ = -1;      // of used pixels
+  int first_row_ = 0, last_row_ = -1;      // rows of used pixels
   std::vector<std::array<int, 2>> spans_;  // first and last used column of each row
   Point2 middle_;                          // of the used pixels, AFM nm
   double reach_nm_ = 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sparse matrices are factored by CHOLMOD on OpenBLAS, in the module `cholmod`.
+// Sparse matrices are factorised by CHOLMOD on OpenBLAS, in the module `cholmod`.
 #pragma once
 
 #include <memory>
@@ -19,17 +19,17 @@ class Factor {
   virtual Grid<double> draw(const Grid<double>& normal) = 0;
 };
 
-/// What the module gives.
+/// The functions of the module.
 struct CholmodLibrary {
   static constexpr ModuleName module{
       "cholmod", "reconstructs surfaces",
       "CHOLMOD and OpenBLAS (Debian: libcholmod3, libopenblas0-pthread)", 200};
 
   std::unique_ptr<Factor> (*make_factor)();
-  // OpenBLAS's own.
+  // Functions of OpenBLAS.
   void (*set_blas_threads)(int count);
   int (*blas_threads)();
-  int (*blas_is_parallel)();  ///< 0: built for one thread
+  int (*blas_is_parallel)();  ///< 0: OpenBLAS was built for one thread
 };
 
 inline const CholmodLibrary& cholmod_library() { return surf::module<CholmodLibrary>(); }

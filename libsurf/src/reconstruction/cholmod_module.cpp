@@ -7,7 +7,7 @@
 #include "cholmod_library.h"
 #include "surf/core/error.h"
 
-// OpenBLAS's own, which no header of Debian's declares.
+// Functions of OpenBLAS that no header in Debian declares.
 extern "C" {
 void openblas_set_num_threads(int count);
 int openblas_get_num_threads();
@@ -17,11 +17,11 @@ int openblas_get_parallel();
 namespace surf::reconstruction {
 namespace {
 
-/// Nested dissection: both halves first, then the two rows or columns between them, which is as far
-/// as the stencil reaches. METIS finds no better one for a field, takes longer, and another one
-/// each time if two threads ask at once.
+/// Nested dissection: both halves first, then the two rows or columns between them, which is the
+/// reach of the stencil. METIS finds no better order for a field, takes longer, and gives different
+/// orders if two threads call it at once.
 void add_dissected(const Area& part, int width, std::vector<int>& order) {
-  constexpr int reach = 2, small = 24;  // samples that are not cut any further
+  constexpr int reach = 2, small = 24;  // parts of at most this side are not divided
   const auto add = [&](const Area& a) {
     for (int y = a.y_begin; y < a.y_end; ++y)
       for (int x = a.x_begin; x < a.x_end; ++x) order.push_back(y * width + x);
@@ -62,13 +62,13 @@ class CholmodFactor final : public Factor {
   void compute(const StencilMatrix& m, const Area& area) override;
   Grid<double> solve(const Grid<double>& right) override { return solved(CHOLMOD_A, right); }
   Grid<double> draw(const Grid<double>& normal) override {
-    // A = P^T L L^T P: L^-T turns white numbers into such of covariance (L L^T)^-1, P^T puts them
-    // back in order.
+    // A = P^T L L^T P. L^-T gives white numbers the covariance (L L^T)^-1, and P^T restores their
+    // order.
     return solved(CHOLMOD_Pt, solved(CHOLMOD_Lt, normal));
   }
 
  private:
-  /// The system of that kind (see cholmod_solve) with this right side.
+  /// Solves the given kind of system (see cholmod_solve) for this right side.
   Grid<double> solved(int system, const Grid<double>& right) {
     std::vector<double> numbers = right.data();
     cholmod_dense b{};
@@ -85,7 +85,7 @@ class CholmodFactor final : public Factor {
 
   cholmod_common common_;
   cholmod_factor* factor_ = nullptr;
-  cholmod_dense *x_ = nullptr, *y_ = nullptr, *e_ = nullptr;  // of solve, kept
+  cholmod_dense *x_ = nullptr, *y_ = nullptr, *e_ = nullptr;  // workspace of solve, reused
   int width_ = 0, height_ = 0;
 };
 

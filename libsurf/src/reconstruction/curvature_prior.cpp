@@ -6,8 +6,8 @@
 namespace surf::reconstruction {
 namespace {
 
-/// Second differences over the pitch squared: along x and y at samples, mixed in the cell up and
-/// right.
+/// Second differences divided by the pitch squared: along x and y at samples, mixed ones in the
+/// cell to the upper right.
 struct Differences {
   Grid<double> xx, yy, xy;
 
@@ -57,7 +57,8 @@ double CurvaturePrior::evaluate(const Grid<double>& z, Grid<double>* gradient,
   for (int y = 0; y < h; ++y) {
     double line = 0;
     for (int x = 0; x < w; ++x) {
-      // Of the four cells around a sample each holds z_xy: half of twice their mean square.
+      // Each of the four cells around a sample has a z_xy; 2 z_xy^2 is half the sum of their
+      // squares.
       double mixed = squared(d.xy(x, y));
       if (x > 0) mixed += squared(d.xy(x - 1, y));
       if (y > 0) mixed += squared(d.xy(x, y - 1));

@@ -5,11 +5,11 @@
 
 namespace surf::reconstruction {
 
-/// What is expected of a surface before it is imaged: its second derivatives are Student's t with
-/// `degrees` degrees of freedom and the scale `curvature_per_nm`, so that it is smooth where
-/// nothing speaks against it and edges cost little. With c^2 = z_xx^2 + z_yy^2 + 2 z_xy^2 at each
-/// sample, -log p = sum of (degrees + 1) / 2 log(1 + c^2 / (degrees curvature^2)). At the border,
-/// derivatives that need samples beyond it do not count.
+/// The prior of the surface. Its second derivatives follow Student's t with `degrees` degrees of
+/// freedom and the scale `curvature_per_nm`, so that the surface is smooth unless the data
+/// contradict, and edges cost little. With c^2 = z_xx^2 + z_yy^2 + 2 z_xy^2 at each sample, -log p
+/// = sum of (degrees + 1) / 2 log(1 + c^2 / (degrees curvature^2)). At the border, derivatives that
+/// need samples beyond it do not count.
 class CurvaturePrior {
  public:
   static constexpr double degrees = 1;
@@ -17,28 +17,28 @@ class CurvaturePrior {
   CurvaturePrior(double pitch_nm, double curvature_per_nm)
       : pitch_nm_(pitch_nm), curvature_(curvature_per_nm) {}
 
-  /// The prior's term. `gradient` (if given) gets its derivative added; `weights` that of each
-  /// sample's c^2 / 2.
+  /// The value of the prior's term. If given, `gradient` is increased by its derivative, and
+  /// `weights` is set to its derivative by each sample's c^2 / 2.
   double evaluate(const Grid<double>& z_nm, Grid<double>* gradient, Grid<double>* weights) const;
 
   double curvature_per_nm() const { return curvature_; }
 
-  /// The scale under which heights are most likely: as the density of all curvatures goes with the
-  /// number of samples' power of it, the mean of c^2 / (degrees curvature^2 + c^2) is 1 / (degrees
-  /// + 1) there. About the median curvature: next to nothing where most of the specimen is
-  /// plateaus. 1e-9 at least.
+  /// The scale that maximises the likelihood of the heights. The density of all curvatures contains
+  /// the scale to the power of the number of samples, so at the maximum the mean of c^2 / (degrees
+  /// curvature^2 + c^2) is 1 / (degrees + 1). The scale is about the median curvature, and nearly 0
+  /// if most of the specimen consists of plateaus. At least 1e-9.
   double likely_curvature_per_nm(const Grid<double>& z_nm) const;
 
   /// c^2 of each sample.
   Grid<double> squared_curvature(const Grid<double>& z_nm) const;
-  /// What `evaluate` gives as weights, of curvatures whose squares are these.
+  /// The weights that `evaluate` gives for these squared curvatures.
   Grid<double> weights_of(const Grid<double>& squared_curvature) const;
 
-  /// out += the quadratic form of these weights, times dz.
+  /// Adds the product of the quadratic form of these weights and dz to `out`.
   void add_product(const Grid<double>& weights, const Grid<double>& dz_nm, Grid<double>& out) const;
 
-  /// Calls entry(x, y, [offsets and coefficients]) for each squared second difference of the
-  /// quadratic form: the form is the sum over calls of weight * (sum of coefficient * z)^2.
+  /// Calls entry(x, y, count, dx, dy, coefficients, weight) for each squared second difference of
+  /// the quadratic form. The form is the sum over all calls of weight * (sum of coefficient * z)^2.
   template <class Entry>
   void for_each_difference(const Grid<double>& weights, const Entry& entry) const {
     const double f = 1 / (pitch_nm_ * pitch_nm_);
@@ -64,8 +64,8 @@ class CurvaturePrior {
   }
 
  private:
-  // Twice the mean over the four corners of a quarter of their weights... see evaluate: a cell's
-  // mixed difference is shared by its corners.
+  // Twice the mean of the weights of a cell's four corners: `evaluate` shares a cell's mixed
+  // difference between its corners.
   static double cell_weight(const Grid<double>& w, int x, int y) {
     return 0.5 * (w(x, y) + w(x + 1, y) + w(x, y + 1) + w(x + 1, y + 1));
   }

@@ -51,7 +51,7 @@ class Problem final : public solvers::SmoothFunction {
   const Watch& watch_;
 };
 
-/// Ends when an iteration lowers the objective by less than the tolerance, three times in a row.
+/// Ends the descent when three iterations in a row lower the objective by less than the tolerance.
 class Settled {
  public:
   explicit Settled(double tolerance) : tolerance_(tolerance) {}
@@ -111,7 +111,7 @@ void fit_few(const Objective& o, Unknowns& at, const Watch& watch) {
   double damping = 1e-6;
   for (int iteration = 0; iteration < 20; ++iteration) {
     watch.check();
-    // Images of a unit change of each number; the SEM's need no derivative by heights.
+    // Images of a unit change of each unknown. Those of the SEM need no derivative by heights.
     Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
     Eigen::VectorXd g = Eigen::VectorXd::Zero(n);
     if (of_map) {

@@ -10,10 +10,10 @@
 namespace surf::reconstruction {
 namespace {
 
-/// Products that take about the time of a factorisation.
+/// The number of products that take as long as a factorisation.
 constexpr int worth_a_factor = 12;
 
-/// Of half a scale: progress is told as if that many were always to come.
+/// Usual iterations of half a scale: the reported progress always assumes this many more.
 constexpr int usual_iterations = 10;
 
 double largest(const Grid<double>& g) {
@@ -24,13 +24,13 @@ double largest(const Grid<double>& g) {
 
 struct Inner {
   Step step;
-  double promised = 0;  // by how much the quadratic model falls
+  double promised = 0;  // predicted decrease by the quadratic model
   double length = 0;    // in the preconditioner's norm
   int products = 0;
   bool at_border = false;
 };
 
-/// The objective about a place, g.d + d.A d / 2.
+/// The quadratic model of the objective about a point, g.d + d.A d / 2.
 struct Quadratic {
   const Objective& objective;
   const Unknowns& at;
@@ -41,8 +41,8 @@ struct Quadratic {
   Step product(const Step& v) const { return objective.product(at, state, v, &near); }
 };
 
-/// Minimises it within a ball of the preconditioner's norm, until the residual is `reduction` of
-/// what it was.
+/// Minimises the model within a ball of the preconditioner's norm, until the residual has fallen to
+/// `reduction` of its initial value.
 Inner steihaug(const Quadratic& q, const Preconditioner& m, double radius, double reduction,
                int most, const Watch& watch) {
   Inner in;
@@ -51,17 +51,15 @@ Inner steihaug(const Quadratic& q, const Preconditioner& m, double radius, doubl
   add(p, -1, z);
   double rz = dot(r, z);
   const double begin = rz;
-  if (!(rz > 0)) return in;  // nothing pulls: as at a level surface, where a model has no slope
-  double
-      dd = 0,
-      dp = 0,
-      pp = rz;  // products in the norm of M: of the step, the step and the direction, the direction
+  if (!(rz > 0)) return in;  // no gradient, as at a level surface, where a model has no slope
+  // Products in the norm of M: step with step, step with direction, direction with direction.
+  double dd = 0, dp = 0, pp = rz;
   while (in.products < most) {
     watch.check();
     const Step ap = q.product(p);
     ++in.products;
     const double curvature = dot(p, ap);
-    if (!(curvature > 0) && !std::isfinite(radius)) return in;  // within rounding of nothing
+    if (!(curvature > 0) && !std::isfinite(radius)) return in;  // zero within rounding
     const double alpha = rz / curvature;
     const double next = dd + 2 * alpha * dp + alpha * alpha * pp;
     if (!(curvature > 0) || next >= radius * radius) {
@@ -106,8 +104,8 @@ DescentReport gauss_newton(const Objective& o, Unknowns& at, const DescentOption
   int fresh_products = 0;
   while (report.iterations < options.iterations) {
     options.watch.report(report.iterations, report.iterations + usual_iterations);
-    // Little changes at the end: what the quadratic is made of is kept until its steps take more
-    // than making it would.
+    // Near the end little changes: factorisation and SEM approximation are kept until the steps
+    // with them cost more than renewing them.
     if (stale) {
       m.factor(o, at, state);
       if (o.sem) near = o.sem->near(*state.sem, at.mixture);

@@ -10,8 +10,8 @@ namespace surf::reconstruction {
 
 struct DescentOptions {
   int iterations = 50;
-  double tolerance = 1;    ///< nats: ends when an iteration lowers the objective by less
-  int most_products = 60;  ///< of an iteration
+  double tolerance = 1;    ///< nats; ends when an iteration lowers the objective by less
+  int most_products = 60;  ///< per iteration
   int threads = 0;
   Watch watch;
 };
@@ -22,10 +22,10 @@ struct DescentReport {
   std::string ended;
 };
 
-/// Gauss-Newton with a trust region: each step by preconditioned conjugate gradients (Steihaug
-/// 1983, doi:10.1137/0720042), on a second derivative whose SEM part is sparse (SemTerm::Near). It
-/// takes as many steps as with the exact one, each for a third of the time; objective and gradient
-/// are exact.
+/// Gauss-Newton with a trust region. Each step is computed by preconditioned conjugate gradients
+/// (Steihaug 1983, doi:10.1137/0720042), with a second derivative whose SEM part is sparse
+/// (SemTerm::Near). It takes as many steps as with the exact second derivative, each in a third of
+/// the time. Objective and gradient are exact.
 DescentReport gauss_newton(const Objective& objective, Unknowns& at, const DescentOptions& options);
 
 }  // namespace surf::reconstruction

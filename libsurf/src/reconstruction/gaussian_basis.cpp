@@ -10,7 +10,7 @@
 namespace surf::reconstruction {
 namespace {
 
-/// Where the Gaussian falls below this share of its middle it ends.
+/// The Gaussian is cut off where it falls below this share of its maximum.
 constexpr double faintest = 1e-7;
 
 template <class Work>
@@ -18,7 +18,8 @@ void lines(int count, int threads, const Work& work) {
   parallel_for(count, threads, [&](std::size_t i, int) { work(static_cast<int>(i)); });
 }
 
-/// A line with its mirrored ends, and back: the ends' weights come back where they came from.
+/// A line with mirrored ends. `unload` is the transpose: weights at the ends return to the samples
+/// that they came from.
 struct Padded {
   std::vector<double> z;
   int reach, count;

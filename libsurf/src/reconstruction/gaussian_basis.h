@@ -7,23 +7,24 @@
 
 namespace surf::reconstruction {
 
-/// Sums of Gaussians of one width, one at each sample: h = C * G (thesis, 9.1). Beyond the border
-/// the coefficients are mirrored, so that constants stay constants. The samples of G add up to 1.
+/// Sums of Gaussians of one width, one Gaussian at each sample: h = C * G (thesis, 9.1). Beyond the
+/// border the coefficients are mirrored, so that constants stay constant. The samples of G add up
+/// to 1.
 class GaussianBasis {
  public:
   GaussianBasis(double sigma_px, int threads);
 
   Grid<double> sum(const Grid<double>& coefficients) const;   ///< C * G
-  Grid<double> transpose(const Grid<double>& weights) const;  ///< its exact adjoint
+  Grid<double> transpose(const Grid<double>& weights) const;  ///< the exact adjoint of `sum`
 
-  /// Coefficients whose sum comes close to `heights`: Van Cittert's iteration C += relaxation
-  /// (heights - C * G) (thesis, 9.4), until the largest residual is below `tolerance` or after
-  /// `iterations`.
+  /// Coefficients whose sum approximates `heights`, by Van Cittert's iteration C += relaxation
+  /// (heights - C * G) (thesis, 9.4). It ends when the largest residual is below `tolerance`, or
+  /// after `iterations`.
   Grid<double> deconvolved(const Grid<double>& heights, double tolerance, int iterations,
                            double relaxation = 1) const;
 
  private:
-  std::vector<double> half_;  // weights of 0, 1, 2 ... samples away
+  std::vector<double> half_;  // weights at distances of 0, 1, 2 ... samples
   int threads_;
 };
 

@@ -6,7 +6,7 @@
 namespace surf::reconstruction {
 namespace {
 
-constexpr double largest_tip_change = 2;  // a factor of 7.4 of its slope
+constexpr double largest_tip_change = 2;  // a factor of 7.4 of the slope
 
 }  // namespace
 
@@ -99,7 +99,7 @@ Unknowns Objective::moved(const Unknowns& at, const Step& step) const {
       next.mixture[c] *= 1 + step.mixture[0];
     next.mixture.back() += step.mixture[1];
   }
-  if (fit_tip)  // within what a tip may be: a long step must not end at no number
+  if (fit_tip)  // limited, because a long step must not give NaN
     for (int k = 0; k < tip_numbers; ++k)
       next.tip[k] = std::clamp(at.tip[k] + step.tip[k], -largest_tip_change, largest_tip_change);
   return next;

@@ -11,20 +11,20 @@
 
 namespace surf::reconstruction {
 
-/// Everything that is fitted.
+/// All unknowns of the fit.
 struct Unknowns {
   Grid<double> z_nm;  ///< on the surface's samples
   Affine surface_to_afm;
-  std::vector<double> mixture;  ///< a gain for each channel and the offset; empty without SEM
-  TipChange tip{};              ///< from the tip that is given
+  std::vector<double> mixture;  ///< one gain per channel, then the offset; empty without SEM
+  TipChange tip{};              ///< change from the given tip
 };
 
-/// A change of it, or a derivative by it.
+/// A change of the unknowns, or a derivative by them.
 struct Step {
   Grid<double> z_nm;
-  MapChange map{};          ///< all 0 where the map is not fitted
-  MixtureChange mixture{};  ///< likewise
-  TipChange tip{};          ///< likewise
+  MapChange map{};          ///< 0 if the map is not fitted
+  MixtureChange mixture{};  ///< 0 if not fitted
+  TipChange tip{};          ///< 0 if not fitted
 };
 double dot(const Step& a, const Step& b);
 void add(Step& to, double factor, const Step& step);
@@ -38,12 +38,11 @@ class Objective {
   CurvaturePrior prior;
   SurfaceFrame frame;
   bool fit_map = false, fit_mixture = false;
-  /// Precision of a height, 1 / nm^2, that keeps a surface in place that no AFM image holds: about
-  /// `start`.
+  /// Precision of a height about `start`, 1 / nm^2. It keeps the surface in place if there is no
+  /// AFM image.
   double anchor_per_nm2 = 0;
   Grid<double> start;
-  /// The tip is fitted, about the one that is given. Where nothing speaks for another its slope is
-  /// right within a third.
+  /// Whether the tip is fitted. Its prior: the slope of the given tip is right within a third.
   bool fit_tip = false;
   double tip_precision = 9;
 
@@ -57,9 +56,9 @@ class Objective {
 
   State evaluate(const Unknowns& at) const;
   Step gradient(const Unknowns& at, const State& state) const;
-  /// The Gauss-Newton second derivative times v: J^T (precision or information) J, and the prior's
-  /// with its weights held, which bounds it from above. Positive semidefinite. `near`, if given,
-  /// stands for the SEM's J, at a third of the price.
+  /// The product of the Gauss-Newton second derivative and v: J^T (precision or information) J,
+  /// plus the second derivative of the prior with fixed weights, which is an upper bound. Positive
+  /// semidefinite. `near`, if given, replaces the SEM's J at a third of the cost.
   Step product(const Unknowns& at, const State& state, const Step& v,
                const SemTerm::Near* near = nullptr) const;
   Unknowns moved(const Unknowns& at, const Step& step) const;

@@ -11,10 +11,10 @@ namespace {
 
 constexpr int rounds = 3;
 constexpr int cheap_draws[rounds] = {12, 12, 48};
-constexpr double around_px = 3;  // over which the ratio of variances is averaged
+constexpr double around_px = 3;  // range over which the ratio of variances is averaged
 
-/// What noise of both images does to the gradient: normal with the precision that they bring.
-/// `near`: see SemTerm::Near; null: the SEM's own.
+/// A draw of the gradient's change by the noise of both images: normal, with the precision of the
+/// data. `near`: see SemTerm::Near; null: the SEM's exact J.
 Step data_pull(const Objective& o, const Unknowns& at, const Objective::State& s,
                const SemTerm::Near* near, std::uint64_t seed) {
   Step r = o.zero();
@@ -34,7 +34,7 @@ Step data_pull(const Objective& o, const Unknowns& at, const Objective::State& s
   return r;
 }
 
-/// The same of the prior.
+/// Adds a draw of the prior's contribution.
 void add_prior_pull(const Objective& o, const Objective::State& s, std::uint64_t seed, Step& r) {
   NormalNumbers normal(seed, 2);
   o.prior.for_each_difference(s.prior_weights, [&](int x, int y, int count, const int* dx,
@@ -48,8 +48,8 @@ void add_prior_pull(const Objective& o, const Objective::State& s, std::uint64_t
     for (double& v : r.tip) v += std::sqrt(o.tip_precision) * normal();
 }
 
-/// x with A x = r by preconditioned conjugate gradients, until the residual, in the
-/// preconditioner's norm, is `reduction` of what it was. `product` is A.
+/// Solves A x = r by preconditioned conjugate gradients, until the residual in the preconditioner's
+/// norm has fallen to `reduction` of its initial value. `product` is the product with A.
 template <class Product>
 Step solve(const Objective& o, const Product& product, const Preconditioner& m, const Step& right,
            double reduction, const Watch& watch) {
@@ -88,7 +88,8 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
     Preconditioner::Variances drawn = m.variances(o.prior, cheap_draws[round], seed, watch);
     without_sem = std::move(drawn.height_nm2);
     if (round + 1 == rounds) break;
-    Grid<double>& curvature = drawn.curvature_per_nm2;  // uncertain and found, squared
+    // Expected square: variance plus squared value.
+    Grid<double>& curvature = drawn.curvature_per_nm2;
     for (std::size_t i = 0; i < curvature.size(); ++i) curvature.data()[i] += found.data()[i];
     state.prior_weights = o.prior.weights_of(curvature);
   }
@@ -104,8 +105,8 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
   }
   const GaussianBasis around(around_px, threads);
   const Grid<double> mean = around.sum(drawn), expected = around.sum(without_sem);
-  // The prior's pull, which no draw of noise shows: where to the surface would go without it, to
-  // first order.
+  // The prior's bias, which draws of noise do not contain: the displacement of the surface if the
+  // prior were removed, to first order.
   Step pull = o.zero();
   o.prior.evaluate(at.z_nm, &pull.z_nm, nullptr);
   Grid<double> bias = solve(o, product, m, pull, 0.05, watch).z_nm;

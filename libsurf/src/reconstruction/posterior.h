@@ -10,24 +10,26 @@
 namespace surf::reconstruction {
 
 struct Posterior {
-  Grid<double> deviation_nm;    ///< of the heights, map and mixture free where they are fitted
+  /// Posterior standard deviation; map and mixture are free if they are fitted.
+  Grid<double> deviation_nm;
   Grid<unsigned char> held_by;  ///< see Reconstruction
 };
 
-/// The posterior's deviations, linearised: the average of draws from N(0, A^-1), each at the price
-/// of a solution. So few draws scatter by a fifth and more; but draws of the preconditioner cost
-/// next to nothing and hold the detail, and what the dear ones say of the ratio of the two is
-/// averaged over a few samples around.
+/// The posterior standard deviations, linearised: the average over draws from N(0, A^-1). Each draw
+/// costs as much as a solution of the linear system, so there are few, and their estimate scatters
+/// by a fifth and more. Draws with the preconditioner cost next to nothing and supply the detail;
+/// the expensive draws supply the ratio of the two variances, which is averaged over a few
+/// neighbouring samples.
 ///
-/// The prior's weights are those of the curvature that is expected, its own variance included, as
-/// expectation maximisation for Student's t has it: those at the most likely surface, which is
-/// smoother than any draw, would promise too much. What the prior pulls the surface by is added in
-/// squares: where edges are rounder than it expects, that is most of it.
+/// The prior's weights are those of the expected squared curvature, including its variance, as in
+/// expectation maximisation for Student's t. The weights at the most likely surface would give too
+/// small deviations, because that surface is smoother than any draw. The bias by the prior is added
+/// in squares; where edges are rounder than the prior expects, it is the largest part.
 Posterior posterior(const Objective& objective, const Unknowns& at, int draws, std::uint64_t seed,
                     int threads, const Watch& watch);
 
-/// One draw of the error of heights that are found by one linear step at the truth `at`, by noise
-/// and the prior's pull.
+/// One draw of the error, by noise and the prior's bias, of the heights that one linear step at the
+/// truth `at` gives.
 Grid<double> linear_error(const Objective& objective, const Unknowns& at,
                           const Objective::State& state, const Preconditioner& m,
                           std::uint64_t seed, const Watch& watch);

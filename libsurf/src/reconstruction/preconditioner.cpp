@@ -14,11 +14,11 @@
 namespace surf::reconstruction {
 namespace {
 
-/// Samples that neighbouring tiles reach into each other: three times as far as a contact's height
-/// carries in a plain.
+/// The overlap of neighbouring tiles in samples: three times the range of a contact's influence in
+/// a flat part.
 constexpr int overlap_px = 10;
 
-/// Bilinear weights of a place, inside the samples.
+/// The bilinear weights of a place within the samples.
 struct Corners {
   int x, y;
   double w[4];
@@ -65,21 +65,20 @@ double product(const Grid<double>& a, const Grid<double>& b) {
   return sum;
 }
 
-/// The symmetric matrix nearest to one whose eigenvalues are `least` or more.
+/// The symmetric matrix with eigenvalues of at least `least` that is nearest to `m`.
 Eigen::MatrixXd at_least(const Eigen::MatrixXd& m, double least) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(0.5 * (m + m.transpose()));
   return parts.eigenvectors() * parts.eigenvalues().cwiseMax(least).asDiagonal() *
          parts.eigenvectors().transpose();
 }
 
-/// Samples [begin, end) of a tile along one axis, with those it shares with its neighbours, and its
-/// weights there.
+/// The samples [begin, end) of a tile along one axis, including the overlap, and their weights.
 struct Span {
   int begin = 0, end = 0, own_begin = 0, own_end = 0;
   std::vector<double> weights;
 };
 
-/// Equal parts of an axis, each reaching into its neighbours, with weights that add up to 1.
+/// Divides an axis into equal, overlapping parts with weights that add up to 1.
 std::vector<Span> spans(int samples, int tile) {
   const int count =
       tile > 0 ? std::max(1, static_cast<int>(std::lround(samples / static_cast<double>(tile))))
@@ -110,15 +109,15 @@ std::vector<Span> spans(int samples, int tile) {
 
 struct Preconditioner::Blocks {
   Eigen::LDLT<Eigen::MatrixXd> map, mixture, tip;
-  std::array<Grid<double>, tip_numbers> follows;  // how the surface gives way to the tip
+  std::array<Grid<double>, tip_numbers> follows;  // response of the surface to the tip
   bool has_map = false, has_mixture = false, has_tip = false;
 
   void eliminate_tip(const Objective& o, const Objective::State& s, const Preconditioner& surface);
 };
 
-/// The tip with the surface: what one takes off a contact the other can give back, so that a block
-/// of its own would leave a long valley. Tiles are no exact inverse, so that the rest could fall
-/// below what the tip's prior leaves.
+/// Eliminates the tip together with the surface. At a contact, tip and surface can compensate each
+/// other, so separate blocks would leave a long valley. Tiles are not an exact inverse, so the
+/// remaining block could fall below the tip's prior; it is limited to the prior.
 void Preconditioner::Blocks::eliminate_tip(const Objective& o, const Objective::State& s,
                                            const Preconditioner& surface) {
   const int w = o.frame.width, h = o.frame.height;
@@ -151,7 +150,7 @@ Preconditioner::Preconditioner(int tile_px, int threads)
 Preconditioner::~Preconditioner() = default;
 
 void Preconditioner::make_tiles(int width, int height) {
-  // Wide enough that a sample lies in two tiles along an axis at most.
+  // Tiles are so wide that a sample lies in at most two tiles along each axis.
   const int tile = tile_px_ > 0 ? std::max(tile_px_, 4 * overlap_px) : 0;
   for (const Span& v : spans(height, tile))
     for (const Span& u : spans(width, tile)) {
@@ -176,7 +175,7 @@ void Preconditioner::factor(const Objective& o, const Unknowns& at, const Object
   parallel_for(tiles_.size(), std::min(threads_, OneBlasThread::most_at_once()),
                [&](std::size_t i, int) { tiles_[i].factor.compute(m, tiles_[i].area); });
 
-  // Map and mixture: their own blocks.
+  // Map and mixture have blocks of their own.
   Blocks& few = *blocks_;
   few.has_map = o.afm && o.fit_map;
   if (few.has_map) {

@@ -11,31 +11,33 @@
 
 namespace surf::reconstruction {
 
-/// A matrix like the Gauss-Newton second derivative, but sparse, so that it can be factored: the
-/// prior's part and the contacts' as if the AFM's noise were white and its samples bilinear; the
-/// SEM's part is left out. The prior spans eight orders of magnitude between a plain and a long
-/// wave, which is what conjugate gradients cannot bear; what the SEM adds is of the prior's size
-/// where the surface bends, and saved a tenth of the products at most.
+/// A sparse approximation of the Gauss-Newton second derivative, which can be factorised. It
+/// contains the prior, and the contacts as if the AFM's noise were white and its samples bilinear;
+/// it leaves out the SEM. The prior alone spans eight orders of magnitude between flat parts and
+/// long waves, which conjugate gradients cannot handle. The SEM's part is as large as the prior's
+/// where the surface is curved; including it saved at most a tenth of the products.
 class Preconditioner {
  public:
-  /// About how many samples a tile is wide and high: small ones are factored sooner, and solved in
-  /// a processor's cache.
+  /// Approximate side of a tile in samples. Small tiles are factorised faster, and solved in a
+  /// processor's cache.
   static constexpr int usual_tile_px = 96;
 
-  /// Tiles of about `tile_px` overlap and are factored apart, so that the work grows with the area
-  /// alone and all threads share it. 0: one tile, the matrix's inverse but for rounding.
+  /// Tiles of about `tile_px` overlap and are factorised separately, so that the work is
+  /// proportional to the area and all threads share it. 0: a single tile, which gives the inverse
+  /// of the matrix up to rounding.
   Preconditioner(int tile_px, int threads);
   ~Preconditioner();
 
-  /// For weights and contacts of this state. The first call finds the order of elimination.
+  /// Factorises for the weights and contacts of this state. The first call also finds the order of
+  /// elimination.
   void factor(const Objective& objective, const Unknowns& at, const Objective::State& state);
 
-  /// Where tiles overlap their solutions are blended, by the roots of weights that add up to 1
-  /// before and after, so that the whole is symmetric.
+  /// Solves with all tiles. Where tiles overlap, solutions are blended: the roots of weights that
+  /// add up to 1 are applied before and after each solution, so that the operator is symmetric.
   Step solve(const Step& residual) const;
 
-  /// Variances of what has its inverse as covariance, each sample's from `draws` draws within its
-  /// tile.
+  /// Variances under the covariance that is the inverse of this matrix. Each sample's variance
+  /// comes from `draws` draws within its tile.
   struct Variances {
     Grid<double> height_nm2;
     Grid<double> curvature_per_nm2;  ///< the mean of `CurvaturePrior::squared_curvature`
@@ -45,11 +47,11 @@ class Preconditioner {
 
  private:
   struct Tile {
-    Area area, own;      // with and without what it shares
-    Grid<double> share;  // root of the weight that its solution has, of its size
+    Area area, own;      // with and without the overlap
+    Grid<double> share;  // root of the weight of its solution, of the size of `area`
     SparseFactor factor;
   };
-  struct Blocks;  // of the few other unknowns
+  struct Blocks;  // blocks of map, mixture and tip
 
   void make_tiles(int width, int height);
 

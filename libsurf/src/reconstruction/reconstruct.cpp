@@ -18,11 +18,13 @@ namespace {
 
 using namespace reconstruction;
 
-constexpr int least_pixels = 256;         // 16 x 16 in common
-constexpr double share_of_scales = 0.75;  // of the time, deviations take the rest
-constexpr double coarsely = 20;           // times the tolerance, where the prior is still to change
-constexpr double rough_looseness =
-    3;  // times the likely curvature: what neither image holds is not white
+constexpr int least_pixels = 256;         // 16 x 16
+constexpr double share_of_scales = 0.75;  // share of the time; the uncertainty takes the rest
+// Factor of the tolerance while the prior may still change.
+constexpr double coarsely = 20;
+// Factor of the likely curvature on rough ground: features that neither image determines are not
+// white.
+constexpr double rough_looseness = 3;
 constexpr double worth_loosening = 1.3;
 
 void check(const AfmData* afm, const SemData* sem, const ReconstructionOptions& o) {
@@ -91,7 +93,7 @@ ResidualReport judge(const Grid<double>& white, const Mask& used) {
     r.along = along / static_cast<double>(pairs_along) / variance;
   if (variance > 0 && pairs_across > 0)
     r.across = across / static_cast<double>(pairs_across) / variance;
-  // What chance allows, and what is too small to matter.
+  // Limits: what chance allows, plus deviations too small to matter.
   const double chance = 5 / std::sqrt(n);
   r.like_noise = std::fabs(r.mean) < 0.1 + chance && r.deviation > 0.8 - chance &&
                  r.deviation < 1.15 + chance && std::fabs(r.along) < 0.1 + chance &&
@@ -99,7 +101,7 @@ ResidualReport judge(const Grid<double>& white, const Mask& used) {
   return r;
 }
 
-/// The reconstruction as it goes.
+/// The state of a running reconstruction.
 class Work {
  public:
   Work(const AfmData* afm, const SemData* sem, const ReconstructionOptions& options)
@@ -183,9 +185,9 @@ class Work {
     return s;
   }
 
-  /// What stands beyond the surface is the scan less the tip as it is now: a scan that was eroded
-  /// by a blunter one would hold the tip back, as dilation of it by a sharper one is lower than the
-  /// scan.
+  /// Renews the heights beyond the surface: the scan eroded by the current tip. A scan eroded by a
+  /// blunter tip would hold the fitted tip back, because its dilation by a sharper tip lies below
+  /// the scan.
   void erode_again() {
     if (!objective_.fit_tip) return;
     AfmData now = *afm_;
@@ -252,11 +254,11 @@ class Work {
     objective_.prior = CurvaturePrior(objective_.frame.pitch_nm, curvature_per_nm);
   }
 
-  /// Rough ground bends everywhere; a prior for plateaus and edges would pull it flat. Where a
-  /// surface that was made under this prior bends more than that at half its samples, it gets one
-  /// that only holds what the images do not. False if nothing was to be done. A surface never bends
-  /// more than the true one under a prior that is too stiff, so that a specimen of plateaus is not
-  /// taken for rough ground.
+  /// Rough ground is curved everywhere, and a prior for plateaus and edges would flatten it. If at
+  /// least half of the samples are more curved than the prior expects, the prior is replaced by a
+  /// weaker one, which only determines what the images do not. Returns false if the prior stays.
+  /// Under a prior that is too stiff, a surface is never more curved than the true one, so a
+  /// specimen of plateaus is not mistaken for rough ground.
   bool loosen_prior() {
     const double likely = objective_.prior.likely_curvature_per_nm(at_.z_nm),
                  now = objective_.prior.curvature_per_nm();
@@ -396,8 +398,8 @@ class Work {
 std::vector<double> default_scales_px(ReconstructionMethod method, int width, int height) {
   if (method == ReconstructionMethod::gauss_newton) return {5, 1.4};
   std::vector<double> scales;
-  // Jones's schedule from where descents get through: begun at 60 pixels they stall far off
-  // (docs/methods/reconstruction.md).
+  // Jones's schedule, beginning at the scale from which descents succeed: from 60 pixels they stall
+  // far from the optimum (docs/methods/reconstruction.md).
   const double widest = std::min(10.0, std::min(width, height) / 3.0);
   for (double s = 60; s > 0.38; s /= 1.875)
     if (s <= widest) scales.push_back(s);

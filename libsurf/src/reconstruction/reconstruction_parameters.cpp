@@ -9,7 +9,7 @@
 namespace surf {
 namespace {
 
-/// A number that is the optimiser's own choice where it is 0.
+/// Describes a number for which 0 means the optimiser's own choice.
 template <class Number>
 void show_or_own(ParameterVisitor& visit, Number& number, const Parameter& about) {
   std::optional<Number> given = number != 0 ? std::optional(number) : std::nullopt;
@@ -17,7 +17,7 @@ void show_or_own(ParameterVisitor& visit, Number& number, const Parameter& about
   number = given.value_or(0);
 }
 
-/// What is done unless a flag says that it is not.
+/// Describes a step that is done unless a flag disables it.
 void show_unless(ParameterVisitor& visit, bool& done, const Parameter& about) {
   bool left_out = !done;
   visit(left_out, about);

@@ -11,8 +11,8 @@ namespace surf {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-constexpr double reach_in_blurs =
-    9;  // beyond it a blurred edge is 0 to the last bit of a double's 1
+// Beyond it a blurred edge is 0 relative to 1 in double precision.
+constexpr double reach_in_blurs = 9;
 
 Point2 unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
 double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
@@ -21,12 +21,12 @@ Point2 minus(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
 Point2 plus(Point2 a, Point2 b, double factor) { return {a.x + factor * b.x, a.y + factor * b.y}; }
 double apart(Point2 a, Point2 b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
-/// A step that begins to rise left of 0, blurred.
+/// A blurred step that rises at x = 0.
 double blurred_step(double x_nm, double blur_nm) {
   return 0.5 * std::erfc(-x_nm / (blur_nm * std::numbers::sqrt2));
 }
 
-/// A strip of that half width about 0, blurred: even and smooth, also at 0.
+/// A blurred strip of this half width about 0: even, and smooth also at 0.
 double blurred_strip(double x_nm, double half_width_nm, double blur_nm) {
   if (std::abs(x_nm) > half_width_nm + reach_in_blurs * blur_nm) return 0;
   return blurred_step(half_width_nm - x_nm, blur_nm) - blurred_step(-half_width_nm - x_nm, blur_nm);
@@ -114,7 +114,7 @@ double Island::operator()(Point2 p) const {
     share += amplitudes_[i] * std::cos(k * angle + phases_[i]);
     slope -= k * amplitudes_[i] * std::sin(k * angle + phases_[i]);
   }
-  // To first order the distance to the outline.
+  // The argument is the distance to the outline, to first order.
   return blurred_step((radius_nm_ * share - r) / std::hypot(1, slope / share), blur_nm_);
 }
 

@@ -7,17 +7,17 @@
 
 namespace surf {
 
-// Shapes as a share of their height, in [0, 1]: what a Gaussian blur of standard deviation
-// `blur_nm` makes of a binary pattern, exactly for straight edges and rectangles, up to the
-// curvature of an edge otherwise. Lengths are nm, angles degrees counter-clockwise from +x.
+// Shapes as a share of their height, in [0, 1]: a binary pattern after a Gaussian blur of standard
+// deviation `blur_nm`. The blur is exact for straight edges and rectangles; for other edges it
+// neglects the curvature of the edge. Lengths are nm, angles degrees counter-clockwise from +x.
 
-/// One piece of a stroke's middle line: straight, or an arc.
+/// One piece of a stroke's centre line: straight or an arc.
 struct StrokePiece {
   double length_nm;     ///< > 0
-  double turn_deg = 0;  ///< by which the heading changes evenly along it
+  double turn_deg = 0;  ///< even change of the heading along the piece
 };
 
-/// A line of even width with round ends. Without pieces: a disc.
+/// A line of constant width with round ends. Without pieces: a disc.
 class Stroke {
  public:
   Stroke(Point2 start, double heading_deg, double width_nm, double blur_nm,
@@ -26,8 +26,9 @@ class Stroke {
 
  private:
   struct Piece {
-    Point2 from;            // where it begins; of an arc its centre
-    Point2 along;           // unit vector: the heading; of an arc from its centre to its middle
+    Point2 from;  // start of a straight piece; centre of an arc
+    Point2
+        along;  // unit vector: heading of a straight piece; from the centre to the middle of an arc
     double length_nm = 0;   // of a straight piece
     double radius_nm = 0;   // of an arc, else 0
     double half_angle = 0;  // of an arc, radians
@@ -38,10 +39,10 @@ class Stroke {
   std::vector<Piece> pieces_;
   double half_width_nm_, blur_nm_;
   Point2 start_;
-  double reach_nm_;  // from there; 0 beyond
+  double reach_nm_;  // distance from the start beyond which the height is 0
 };
 
-/// A rectangle about `centre`, turned.
+/// A rotated rectangle about `centre`.
 class Pad {
  public:
   Pad(Point2 centre, double width_nm, double depth_nm, double turn_deg, double blur_nm);

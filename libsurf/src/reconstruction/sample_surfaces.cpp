@@ -18,10 +18,10 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// Number of the streams that nothing else uses with the same seed.
+// Stream number that nothing else uses with the same seed.
 constexpr std::uint64_t stream = 0x5a3e;
 
-/// What features are strewn over: the view and as much around it as a turned scan may show.
+/// The area with features: the view and the surroundings that a rotated scan may show.
 constexpr double half_width_nm = 5000, half_depth_nm = 4000;
 
 class Draw {
@@ -35,7 +35,8 @@ class Draw {
 
 using Shape = std::function<double(Point2)>;
 
-/// Shapes of one height that may touch and cross: none rises above another where they do.
+/// Shapes of the same height that may touch and cross; the surface does not rise higher where they
+/// do.
 SampleSurface merged(std::string name, std::string what, std::vector<Shape> shapes,
                      double height_nm) {
   return {std::move(name), std::move(what),
@@ -101,7 +102,7 @@ SampleSurface thin_lines() {
     const Point2 start{draw(-half_width_nm, half_width_nm), draw(-half_depth_nm, half_depth_nm)};
     const double heading = draw(-180, 180), length = draw(700, 1700), turn = draw(-50, 50),
                  more = draw(400, 1200);
-    // The view has its own.
+    // The view has lines of its own.
     const bool near = std::abs(start.x) < 3300 && std::abs(start.y) < 1900;
     if (!near) line(start.x, start.y, heading, draw(50, 60), {{length}, {300, turn}, {more}});
   }
@@ -110,7 +111,7 @@ SampleSurface thin_lines() {
                 std::move(lines), 100);
 }
 
-/// Calls `place(centre)` for places at least `apart_nm` from each other, strewn over everything.
+/// Calls `place(centre)` for random places that are at least `apart_nm` from each other.
 template <class Place>
 void strew(Draw& draw, double apart_nm, const Place& place) {
   std::vector<Point2> taken;
@@ -136,7 +137,7 @@ SampleSurface pads_and_pits() {
     const double z = kind < 0.7 ? height : -0.7 * height;
     if (draw(0, 1) < 0.45) pads.push_back({Stroke(p, 0, across, blur, {}), z});
     else pads.push_back({Pad(p, across, other, turn, blur), z});
-    // Some carry a smaller one.
+    // Some pads carry a smaller one.
     if (z > 0 && across > 300)
       pads.push_back({Stroke({p.x + 20, p.y - 25}, 0, 0.35 * across, blur, {}), 40});
   });
@@ -161,15 +162,15 @@ SampleSurface islands() {
                 std::move(outlines), 90);
 }
 
-/// A sum of waves in every direction, whose amplitude is a power of their length: self-affine
-/// (Voss, in Fundamental Algorithms for Computer Graphics, 1985) between the shortest and the
-/// longest, and known everywhere.
+/// A sum of waves in all directions, whose amplitude is a power of their length. It is self-affine
+/// between the shortest and the longest wave (Voss, in Fundamental Algorithms for Computer
+/// Graphics, 1985), and defined everywhere.
 class Waves {
  public:
   Waves(Draw& draw, int count, double shortest_nm, double longest_nm, double hurst, double rms_nm) {
     double power = 0;
     for (int i = 0; i < count; ++i) {
-      // Evenly over the logarithm of the length, one in each step of it.
+      // Lengths are evenly distributed over their logarithm, one wave in each step.
       const double share = (i + draw(0, 1)) / count;
       const double length = longest_nm * std::pow(shortest_nm / longest_nm, share);
       const double turn = draw(0, 2 * pi), amplitude = std::pow(length, hurst);

@@ -11,13 +11,13 @@
 
 namespace surf::reconstruction {
 
-/// A change of gains and offset: the share by which all gains grow, and that of the offset. The
-/// gains keep their ratios: channels are so alike that their gains would trade what the model is
-/// off by (docs/methods/calibration.md).
+/// A change of gains and offset: the relative change of all gains, and the change of the offset.
+/// The gains keep their ratios, because channels are so alike that their gains would compensate
+/// errors of the model (docs/methods/calibration.md).
 using MixtureChange = std::array<double, 2>;
 
-/// The SEM image, given a surface: the model's channels, mixed, and the negative log-likelihood
-/// (thesis, 9.2.2).
+/// The likelihood of the SEM image, given a surface: the mixed channels of the model, and the
+/// negative log-likelihood (thesis, 9.2.2).
 class SemTerm {
  public:
   /// Pixel (0, 0) of the image lies on sample (`left`, `below`) of the surface.
@@ -25,34 +25,35 @@ class SemTerm {
 
   struct State {
     std::unique_ptr<Linearization> linear;
-    Grid<double> simulated;    ///< on the surface's samples; of the image's unit
+    Grid<double> simulated;    ///< on the surface's samples, in the image's unit
     Grid<double> pull;         ///< derivative of the term by each simulated pixel, 0 where not used
-    Grid<double> information;  ///< expected second derivative by it
+    Grid<double> information;  ///< expected second derivative by each simulated pixel
     double value = 0;
   };
 
-  /// A sparse stand-in for J that does the same to waves of 12 samples along x and y: as if a pixel
-  /// saw its own height and the four beside it. Short waves are the prior's, long ones the AFM's;
-  /// those between are what the SEM decides. It costs four changes, and a product with it next to
-  /// nothing.
+  /// A sparse approximation of J that is exact for waves of 12 samples along x and y: a pixel
+  /// depends on its own height and its four neighbours only. Short waves are determined by the
+  /// prior and long ones by the AFM; the SEM determines those in between. Making it costs four
+  /// Jacobian-vector products; a product with it costs next to nothing.
   struct Near {
-    Grid<double> left, right, below, above,
-        own;  ///< derivatives of a pixel by these heights; 0 along the border
+    /// Derivatives of a pixel by these heights; 0 along the border.
+    Grid<double> left, right, below, above, own;
 
     double change(const Grid<double>& dz_nm, int x, int y) const;
-    void scatter(double weight, int x, int y, Grid<double>& out) const;  ///< its transpose
+    /// The transpose of `change`.
+    void scatter(double weight, int x, int y, Grid<double>& out) const;
   };
   Near near(const State& state, const std::vector<double>& mixture) const;
 
-  /// `mixture`: a gain for each channel and the offset.
+  /// `mixture`: one gain per channel, then the offset.
   State evaluate(const Grid<double>& z_nm, const std::vector<double>& mixture) const;
 
-  /// out += J^T w; `by_mixture` gets the derivatives by MixtureChange, if given. `near`, if given,
-  /// stands for J.
+  /// The vector-Jacobian product: out += J^T w. If `by_mixture` is given, the derivatives by
+  /// MixtureChange are added to it. `near`, if given, replaces J.
   void add_gradient(const State& state, const std::vector<double>& mixture,
                     const Grid<double>& weights, const Near* near, Grid<double>& out,
                     MixtureChange* by_mixture) const;
-  /// J (dz, change of the mixture), likewise.
+  /// The Jacobian-vector product J (dz, mixture_change). `near`, if given, replaces J.
   Grid<double> change(const State& state, const std::vector<double>& mixture,
                       const Grid<double>& dz_nm, const MixtureChange& mixture_change,
                       const Near* near = nullptr) const;

@@ -11,7 +11,7 @@ OneBlasThread::OneBlasThread() : before_(cholmod_library().blas_threads()) {
   cholmod_library().set_blas_threads(1);
 }
 OneBlasThread::~OneBlasThread() { cholmod_library().set_blas_threads(before_); }
-// Debian's serial build hands one buffer to all who call: factors come out wrong, or fail.
+// Debian's serial build gives the same buffer to all callers: factors would be wrong, or fail.
 int OneBlasThread::most_at_once() {
   return cholmod_library().blas_is_parallel() == 0 ? 1 : std::numeric_limits<int>::max();
 }

@@ -11,7 +11,7 @@
 namespace surf::reconstruction {
 namespace {
 
-/// Holes get the height of the nearest sample that has one, by steps along the axes.
+/// Fills each hole with the height of the nearest valid sample, by steps along the axes.
 void fill_holes(HeightField& field) {
   if (field.valid.empty()) return;
   std::deque<std::pair<int, int>> rim;

@@ -7,7 +7,7 @@
 
 namespace surf::reconstruction {
 
-/// Samples of a field, ends not included.
+/// A rectangle of samples of a field; ends are excluded.
 struct Area {
   int x_begin = 0, y_begin = 0, x_end = 0, y_end = 0;
   int width() const { return x_end - x_begin; }
@@ -15,11 +15,11 @@ struct Area {
   int samples() const { return width() * height(); }
 };
 
-/// A symmetric matrix between samples of a field that are at most two apart along x and y. Of each
-/// pair the later sample, row by row, holds the entry.
+/// A symmetric matrix between samples of a field that are at most two apart along x and y. The
+/// entry of each pair is stored at its later sample in row-major order.
 class StencilMatrix {
  public:
-  static constexpr int slots = 13;  // two rows of five before, and three of its own
+  static constexpr int slots = 13;  // two rows of five before the sample, and three in its own row
 
   StencilMatrix(int width, int height)
       : width_(width), height_(height), values_(static_cast<std::size_t>(width) * height * slots) {}
@@ -27,7 +27,7 @@ class StencilMatrix {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  /// Adds to the entry of both samples, in either order.
+  /// Adds to the entry of a pair of samples, given in either order.
   void add(int x0, int y0, int x1, int y1, double v) {
     if (y1 > y0 || (y1 == y0 && x1 > x0)) {
       std::swap(x0, x1);
@@ -37,9 +37,9 @@ class StencilMatrix {
             2] += v;
   }
 
-  /// Calls entry(row, value) for column k of the matrix of the area's samples alone, numbered row
-  /// by row: rows rising, the diagonal last. All that lie in the area are there, so that the
-  /// pattern does not depend on the values.
+  /// Calls entry(row, value) for column k of the matrix restricted to the area, whose samples are
+  /// numbered row by row. Rows rise, with the diagonal last. All entries within the area are
+  /// visited, so the pattern does not depend on the values.
   template <class Entry>
   void for_each_in_column(const Area& area, int k, const Entry& entry) const {
     const int x = k % area.width() + area.x_begin, y = k / area.width() + area.y_begin;

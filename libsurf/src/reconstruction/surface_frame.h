@@ -8,7 +8,7 @@
 
 namespace surf::reconstruction {
 
-/// The samples that the surface has: square, row-major.
+/// The samples of the surface: square, row-major.
 struct SurfaceFrame {
   int width = 0, height = 0;
   double pitch_nm = 1, origin_x_nm = 0, origin_y_nm = 0;
@@ -21,9 +21,9 @@ struct SurfaceFrame {
   }
 };
 
-/// A change of the map from the AFM's frame to the surface's samples: of the place, in samples, at
-/// the middle of the scan's used part (0 and 3) and at one reach of it along x (1, 4) and y (2, 5):
-/// all of one size.
+/// A change of the map from the AFM's frame to the surface's samples. It is given by displacements
+/// in samples: at the middle of the scan's used part (0 and 3), and the additional displacement at
+/// one reach along x (1, 4) and along y (2, 5). So all six numbers have the same scale.
 inline constexpr int map_numbers = 6;
 using MapChange = std::array<double, map_numbers>;
 

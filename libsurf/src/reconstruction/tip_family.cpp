@@ -9,9 +9,10 @@
 namespace surf::reconstruction {
 namespace {
 
-constexpr double crowding = 1.5;  // places are at the rim's distance times (k / last) to this power
+// Places are at the rim's distance times (k / last) to this power.
+constexpr double crowding = 1.5;
 
-/// How much each of the numbers counts at a step: linear between two neighbours.
+/// The weight of each of the numbers at a step, by linear interpolation between two neighbours.
 TipChange shares(std::size_t step, std::size_t steps) {
   const double share = (static_cast<double>(step) + 0.5) / static_cast<double>(steps);
   const double at = std::pow(share, 1 / crowding) * (tip_numbers - 1);
@@ -38,8 +39,8 @@ Tip TipFamily::changed(const Tip& tip, const TipChange& change,
   if (slopes_.empty()) return out;
   const bool changes = std::ranges::any_of(change, [](double c) { return c != 0; });
   if (!changes && !by_change) return out;
-  // Factors of the heights at the ends of all steps, and their derivatives. At the apex, and as far
-  // as the tip is flat, no factor changes anything.
+  // Factors of the heights at the ends of all steps, and their derivatives. No factor changes the
+  // apex or a flat end.
   const std::size_t steps = slopes_.size();
   std::vector<double> factor(steps + 1, 1.0);
   std::vector<TipChange> slope_of_factor(steps + 1, TipChange{});
@@ -66,7 +67,7 @@ Tip TipFamily::changed(const Tip& tip, const TipChange& change,
       const double r =
           std::hypot((x - tip.apex_x) * tip.pitch_x_nm, (y - tip.apex_y) * tip.pitch_y_nm) /
           step_nm_;
-      const double at = std::min(r, static_cast<double>(steps));  // beyond the rim as at it
+      const double at = std::min(r, static_cast<double>(steps));  // constant beyond the rim
       const std::size_t i = std::min(static_cast<std::size_t>(at), steps - 1);
       const double t = at - static_cast<double>(i);
       if (changes) out.z_nm(x, y) = z * ((1 - t) * factor[i] + t * factor[i + 1]);

@@ -26,7 +26,8 @@ struct TipCandidate {
   double tolerance = 0;     ///< apex tolerance of the outer bound, in thresholds
   double misfit = 0;        ///< e' R^-1 e per pixel; below 1 if the fit follows the noise
   double freedom = 0;       ///< touched surface pixels per image pixel
-  /// Stein's estimate of the error, up to a constant: misfit + 2 freedom.
+  /// Stein's estimate of the error, up to a constant: misfit + 2 freedom; of a candidate after the
+  /// first fit, as it would be with its superfluous pixels taken away.
   double risk = 0;
 };
 

@@ -31,7 +31,8 @@ struct BlindTipOptions {
   /// Technol. B 16 (1998)), >= 0, nm. The bottom of the layer places the tip, the top carves it. 0:
   /// no layer.
   double layer_nm = 0;
-  /// Whether points near the border count; beyond the border everything is allowed. If false, only
+  /// Whether points near the border count, but for the outermost rows and columns; beyond the
+  /// border everything is allowed. If false, only
   /// those points count whose tip lies within the scan wherever it touches (as in Gwyddion). A scan
   /// less than twice as large as the tip has no such points.
   bool border = true;

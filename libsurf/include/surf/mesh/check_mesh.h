@@ -11,7 +11,7 @@
 
 namespace surf {
 
-/// What `check_mesh` found. Edges are undirected vertex pairs.
+/// The result of `check_mesh`. Edges are undirected vertex pairs.
 struct MeshReport {
   std::size_t vertices = 0;
   std::size_t triangles = 0;

@@ -33,7 +33,7 @@ struct RepairOptions {
   int threads = 0;                         ///< 0: one per hardware thread; same result
   Watch watch;
 };
-/// Describes the options mesh.stitch, mesh.sliver and so on.
+/// Describes the parameters mesh.stitch, mesh.sliver and so on.
 void describe(ParameterVisitor& visit, RepairOptions& options);
 
 /// A hole that was left open.

@@ -22,7 +22,7 @@ struct SimplifyOptions {
   int threads = 0;  ///< for the measurement; 0: one per hardware thread. Does not change the result
   Watch watch;
 };
-/// Describes the options mesh.mesh_tolerance and mesh.triangles.
+/// Describes the parameters mesh.mesh_tolerance and mesh.triangles.
 void describe(ParameterVisitor& visit, SimplifyOptions& options);
 
 struct SimplifySummary {

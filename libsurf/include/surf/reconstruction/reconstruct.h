@@ -20,21 +20,18 @@
 
 namespace surf {
 
-/// A levelled scan, and what is known of how it came about: image = dilation of the surface by the
-/// tip + noise.
+/// A levelled scan and its imaging model: image = dilation of the surface by the tip + noise.
 struct AfmData {
   HeightField image;
-  Tip tip;  ///< of the image's pitch
+  Tip tip;  ///< with the pitch of the image
   AfmNoise noise;
-  int upsample = 3;  ///< the dilation is computed on so many samples per pitch (thesis, appendix
-                     ///< C.3), in [1, 8]
+  /// The dilation is computed with this many samples per pitch (thesis, appendix C.3), in [1, 8].
+  int upsample = 3;
 };
 
-/// An SEM image, and what is known of how it came about: image = sum of gain * channel of the model
-/// + offset
-/// + noise.
+/// An SEM image and its imaging model: image = sum of gain * channel of the model + offset + noise.
 struct SemData {
-  PlacedImage image;  ///< square pixels, as the model's
+  PlacedImage image;  ///< with square pixels of the model's size
   std::shared_ptr<const ImageModel> model;
   std::vector<double> gains;  ///< one per channel of the model; 0 leaves a channel out
   double offset = 0;
@@ -51,38 +48,39 @@ enum class ReconstructionMethod {
 struct ReconstructionOptions {
   ReconstructionMethod method = ReconstructionMethod::gauss_newton;
 
-  /// Of the descents: standard deviations of the Gaussians that the surface is a sum of, in pixels
-  /// of the surface, falling. Of Gauss-Newton, whose unknowns are the heights: the prior's
-  /// curvature is multiplied by a scale's square, so that wide ones come first as a smooth surface.
-  /// Empty: the method's own
-  /// (`default_scales_px`).
+  /// For the descents: standard deviations of the Gaussians that the surface is a sum of, in pixels
+  /// of the surface, falling. For Gauss-Newton, whose unknowns are the heights: the curvature of
+  /// the prior is multiplied by the scale's square, so that wide scales come first and give a
+  /// smooth surface. Empty: the method's defaults (`default_scales_px`).
   std::vector<double> scales_px;
-  int iterations = 0;    ///< of each scale, at most; 0: the method's own
-  double tolerance = 0;  ///< > 0: a scale ends when an iteration lowers the objective by less than
-                         ///< this per pixel; 0: the method's own
+  int iterations = 0;  ///< per scale, at most; 0: the method's default
+  /// > 0: a scale ends when an iteration (of descents, three in a row) lowers the objective by less
+  /// than this per pixel; 0: the method's default.
+  double tolerance = 0;
 
-  /// Prior: the scale of the surface's second derivative, 1 / nm, Student's t with one degree of
-  /// freedom, multiplied by the scale's square, see above. 0: 1e-3, so 2e-3 at the end, and what
-  /// the surface itself makes most likely where that is more, as on rough ground, which bends
-  /// everywhere.
+  /// Prior: the scale of the surface's second derivative, 1 / nm, multiplied by the square of the
+  /// scale (see `scales_px`). The second derivative follows Student's t with one degree of freedom.
+  /// 0: 1e-3, which is 2e-3 at the end. On rough ground, which is curved everywhere, a larger value
+  /// is used: three times the curvature that the surface itself makes most likely.
   double curvature_prior_per_nm = 0;
 
-  bool refine_transform = true;    ///< the map is fitted further with the surface
-  bool refine_calibration = true;  ///< and so are the offset and a factor of all gains
-  /// The tip is fitted, too, from the one that is given: seven factors of its slope, between the
-  /// apex and the rim. Of Gauss-Newton with both images; the SEM image tells how far the tip kept
-  /// off the walls, which no scan alone does.
+  bool refine_transform = true;    ///< the map is fitted together with the surface
+  bool refine_calibration = true;  ///< the offset and a common factor of all gains are fitted, too
+  /// The tip is fitted, too, starting from the given one: seven factors of its slope, between the
+  /// apex and the rim. Only for Gauss-Newton with both images: the SEM image shows how far the tip
+  /// kept off the walls, which no scan alone does.
   bool refine_tip = false;
   bool uncertainty = true;  ///< compute `deviation_nm`
-  int probes = 6;           ///< draws that the uncertainty is estimated from, >= 2
-  std::uint64_t seed = 1;   ///< of these
+  int probes = 6;           ///< draws for the estimate of the uncertainty, >= 2
+  std::uint64_t seed = 1;   ///< seed of these draws
   int threads = 0;          ///< 0: one per hardware thread. Does not change the result
   Watch watch;
 };
-/// reconstruction.optimiser, reconstruction.scales and so on; not the threads.
+/// Describes the parameters reconstruction.optimiser, reconstruction.scales and so on, but not the
+/// threads.
 void describe(ParameterVisitor& visit, ReconstructionOptions& options);
 
-/// How an image's whitened residuals look: standard normal and white if all is right.
+/// Statistics of an image's whitened residuals: standard normal and white if everything is right.
 struct ResidualReport {
   double mean = 0, deviation = 1;
   double along = 0, across = 0;  ///< correlation of neighbours along and across rows
@@ -92,77 +90,83 @@ struct ResidualReport {
 
 struct ScaleReport {
   double sigma_px = 0;
-  double curvature_prior_per_nm = 0;  ///< that the scale ended with
-  double afm = 0, sem = 0,
-         prior = 0;  ///< terms of the objective: negative log-likelihoods, without constants
-  double gradient_norm = 0;  ///< largest component, per coefficient
-  int iterations = 0, evaluations = 0,
-      products = 0;   ///< of objective and gradient; of a Hessian and a vector
-  std::string ended;  ///< why: "converged", "iterations"
+  double curvature_prior_per_nm = 0;  ///< prior at the end of the scale
+  /// Terms of the objective: negative log-likelihoods, without constants.
+  double afm = 0, sem = 0, prior = 0;
+  double gradient_norm = 0;  ///< largest component of the gradient by the coefficients
+  /// Evaluations of objective and gradient, and products of a Hessian and a vector.
+  int iterations = 0, evaluations = 0, products = 0;
+  std::string ended;  ///< why the scale ended: "converged", "iterations" or "line search"
   ResidualReport afm_residual, sem_residual;
 };
 
-/// All that the next scale needs.
+/// The state that the next scale starts from.
 struct ReconstructionState {
   HeightField surface;
   Affine sem_to_afm;
   std::vector<double> gains;
   double offset = 0;
-  std::vector<ScaleReport> scales;  ///< those done
-  std::vector<double> tip_change;   ///< of the tip from the one given; empty: not fitted
+  std::vector<ScaleReport> scales;  ///< the finished scales
+  std::vector<double> tip_change;   ///< change from the given tip; empty: not fitted
 };
 
-/// Who keeps states, so that an interrupted run goes on: told after each scale.
+/// Stores states, so that an interrupted reconstruction can be resumed. It is called after each
+/// scale.
 class ReconstructionJournal {
  public:
   virtual ~ReconstructionJournal() = default;
-  virtual std::optional<ReconstructionState>
-  found() = 0;  ///< a state of this very reconstruction, to go on from
+  /// A stored state of the same reconstruction to resume from, if there is one.
+  virtual std::optional<ReconstructionState> found() = 0;
   virtual void keep(const ReconstructionState& state) = 0;
 };
 
 struct Reconstruction {
-  HeightField surface;  ///< in the SEM's frame and on its pixels, heights as the AFM's; AFM only:
-                        ///< on its samples
+  /// In the SEM's frame and on its pixels, with the AFM's heights. With AFM data only: on the
+  /// scan's samples.
+  HeightField surface;
   Affine sem_to_afm;
   std::vector<double> gains;
   double offset = 0;
-  Tip tip;            ///< as fitted, else as given, on the AFM's samples; empty without AFM
-  HeightField start;  ///< what it began with: the eroded scan on the surface's samples
+  Tip tip;            ///< fitted or given tip, on the AFM's samples; empty without AFM
+  HeightField start;  ///< initial surface: the eroded scan on the surface's samples
 
-  HeightField simulated_afm;   ///< on the AFM's samples; holes where the surface does not reach.
-                               ///< Empty without AFM
+  /// On the AFM's samples; holes where the surface does not reach. Empty without AFM.
+  HeightField simulated_afm;
   Grid<double> afm_residual;   ///< whitened
-  Mask afm_used;               ///< 1: the pixel plays a part
+  Mask afm_used;               ///< 1: the pixel contributes
   Grid<double> simulated_sem;  ///< on the surface's samples. Empty without SEM
   Grid<double> sem_residual;   ///< whitened
 
-  Grid<double> deviation_nm;  ///< of each height, linearised: noise and the prior's pull; empty if
-                              ///< not asked for
-  /// What holds each height: 1 the tip touched it, 2 the SEM image halves its prior's variance at
-  /// least; both: 3; 0: nothing but its neighbours and the prior.
+  /// Posterior standard deviation of each height, linearised; includes the bias by the prior. Empty
+  /// if not wanted.
+  Grid<double> deviation_nm;
+  /// The data that support each height. 1: the tip touched it. 2: the SEM image at least halves the
+  /// variance of the height. 3: both. 0: only its neighbours and the prior.
   Grid<unsigned char> held_by;
   std::vector<ScaleReport> scales;
   bool converged = true;
-  std::vector<std::string> warnings;  ///< for people; not empty: look before you trust the result
+  /// For people; if there are any, look before you trust the result.
+  std::vector<std::string> warnings;
 };
 
-/// The method's own scales for a surface so many samples across: for the descents those of the
-/// thesis's schedule, 60 to 0.39 pixels (Jones 1994), that are below 10, fewer for Gauss-Newton.
+/// The method's default scales for a surface with this many samples. For the descents: those of the
+/// thesis's schedule from 60 to 0.39 pixels (Jones 1994) that are at most 10 pixels and at most a
+/// third of the shorter side. Gauss-Newton has fewer.
 std::vector<double> default_scales_px(ReconstructionMethod method, int width, int height);
 
-/// The surface that makes both images, or the one that is there, most likely (thesis, chapter 9;
-/// docs/methods/reconstruction.md). Throws InvalidInput for impossible data, or where the images do
-/// not overlap by 16 pixels, UsageError for options out of range, Interrupted.
+/// Finds the surface that maximises the likelihood of both images, or of the given one (thesis,
+/// chapter 9; docs/methods/reconstruction.md). Throws InvalidInput for impossible data, or if fewer
+/// than 256 AFM pixels (16 x 16) overlap the SEM image; UsageError for options out of range;
+/// Interrupted.
 Reconstruction reconstruct(const AfmData* afm, const SemData* sem,
                            const ReconstructionOptions& options = {},
                            ReconstructionJournal* journal = nullptr);
 
-/// The root-mean-square error of heights, nm, that noise and the prior alone would leave: of one
-/// linear step at the true surface, for data whose noise is as described and whose models, map and
-/// tip are right; the mean over `draws` of the noise. `truth` is on the surface's samples (the
-/// SEM's pixels, or the AFM's samples without one). A mean difference counts, as the AFM image
-/// knows the height. Throws as `reconstruct`.
+/// The root-mean-square error of heights, nm, that noise and the prior alone would leave. It is the
+/// error of one linear step at the true surface, for data with the described noise and correct
+/// models, map and tip; the mean over `draws` draws of the noise. `truth` is on the surface's
+/// samples (the SEM's pixels, or the AFM's samples without SEM). A mean difference counts, because
+/// the AFM image determines the height. Throws as `reconstruct`.
 double noise_floor_nm(const AfmData* afm, const SemData* sem, const HeightField& truth,
                       const ReconstructionOptions& options = {}, int draws = 2);
 

@@ -10,25 +10,25 @@
 
 namespace surf {
 
-/// A surface that is known at every place, so that two microscopes can look at it through any map
-/// and neither resamples what the other has sampled.
+/// A surface that is defined at every place, so that two microscopes can image it through any map
+/// without resampling each other's samples.
 struct SampleSurface {
   std::string name;  ///< fit for a file's name
-  std::string what;  ///< one line for people, no full stop
+  std::string what;  ///< description in one line, without full stop
 
-  /// Height in nm at a place in nm; smooth, and safe to call from several threads. The view that it
-  /// is made for is 4560 x 1720 nm about (0, 0); there are features for 2500 nm or more all around
-  /// it.
+  /// Height in nm at a place in nm. It is smooth, and several threads may call it. It is made for a
+  /// view of 4560 x 1720 nm about (0, 0); features extend at least 2500 nm beyond the view on all
+  /// sides.
   std::function<double(double x_nm, double y_nm)> z_nm;
 };
 
-/// Surfaces to try a reconstruction on, after section 10.2 of the thesis: lines as oxidised into
+/// Surfaces for tests of reconstructions, after section 10.2 of the thesis: lines as oxidised into
 /// silicon with an AFM's tip (nist0523-thick, nist0523-thin), pads and pits, islands of irregular
-/// outline, and rough terrain. Edges are as a Gaussian blur of 15 to 18 nm makes them, up to 69
-/// degrees steep. The same on every run.
+/// outline, and rough terrain. Edges are blurred by Gaussians of 15 to 18 nm and are up to
+/// 69 degrees steep. The same on every run.
 const std::vector<SampleSurface>& sample_surfaces();
 
-/// The one of that name. Throws UsageError that lists the names.
+/// The sample surface called `name`. Throws UsageError that lists the names.
 const SampleSurface& find_sample_surface(const std::string& name);
 
 /// Sets every height of `field` to the surface's at the place that `to_surface` maps the sample to.

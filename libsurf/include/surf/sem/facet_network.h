@@ -17,21 +17,22 @@ struct DenseLayer {
   std::vector<double> biases;   ///< [output]
 };
 
-/// A small neural network on what the filter bank's fits say of the surface at a pixel and on how
-/// much sky is seen from there. Its inputs are, for each scale of length L = 2 sigma (for uniform
-/// weights 2 size / sqrt 12), with the fit's gradient g and its matrix H of half second
-/// derivatives,
+/// A small neural network. Its inputs come from the filter bank's fits to the surface at a pixel,
+/// and from the visible sky. For each scale of length L = 2 sigma (2 size / sqrt 12 for uniform
+/// weights), with the gradient g of the fit and its matrix H of half second derivatives, the inputs
+/// are
 ///     (1 + |g|^2)^(1/4) - 1,   c(L trace H),   (1 + L^2 (trace^2 H - 4 det H))^(1/4) - 1,
-///     c(L g H g / (1 + |g|^2)),   where c(x) = x / (1 + x^2)^(1/4);
-/// then for each band of distances, over 16 directions, the mean and the mean square of the sine s
-/// of the elevation at which the surface is seen; then the mean over directions of what is left of
-/// the sky, the product of 1 - 0.9 max(s, 0)^2 over all distances. Hidden units give x / sqrt(1 +
-/// x^2), and a channel is its scale times o + sqrt(1 + o^2), o being an output of the last layer:
-/// above zero, and linear where it is large. All of it has continuous derivatives.
+///     c(L g H g / (1 + |g|^2)),   where c(x) = x / (1 + x^2)^(1/4).
+/// For each band of distances, there are the mean and the mean square over 16 directions of the
+/// sine s of the elevation of the surface. The last input is the visible sky: the mean over
+/// directions of the product of 1 - 0.9 max(s, 0)^2 over all distances. The activation function of
+/// hidden units is x / sqrt(1 + x^2). A channel is its scale times o + sqrt(1 + o^2), where o is an
+/// output of the last layer: it is above zero, and linear for large o. All functions have
+/// continuous derivatives.
 struct FacetNetworkParameters {
   std::vector<FacetScale> scales;  ///< 1 to 32
-  std::vector<double>
-      sky_edges_nm;  ///< rising, from 0: the limits of the bands; at most 12 bands; or none
+  /// Limits of the bands, rising from 0; at most 12 bands, or none.
+  std::vector<double> sky_edges_nm;
   std::vector<DenseLayer> layers;  ///< 1 to 4; the last has one output for each channel
   struct Channel {
     std::string name;
@@ -40,7 +41,7 @@ struct FacetNetworkParameters {
   std::vector<Channel> channels;  ///< 1 to 8
 };
 
-/// How many inputs a network of these scales and bands has.
+/// The number of inputs of a network with these scales and bands.
 int network_inputs(const FacetNetworkParameters& parameters);
 
 /// Throws InvalidInput for parameters out of range, or if `scope` names no pixel size.

@@ -15,18 +15,18 @@ namespace surf {
 struct FacetNetworkFitOptions {
   std::vector<FacetScale> scales;    ///< empty: `network_scales`
   std::vector<double> sky_edges_nm;  ///< empty: `network_sky_edges`
-  /// How far electrons get in the material, nm, > 0: what lies farther away hardly matters. For the
-  /// scales and bands that are not given.
+  /// The range of electrons in the material, nm, > 0: the surface farther away hardly matters.
+  /// Determines the default scales and bands.
   double range_nm = 30;
-  std::vector<int> hidden{32};  ///< units of each hidden layer, 0 to 3 layers of 1 to 256
-  int iterations = 600;         ///< of the optimiser at most, in all, 1 to 100,000
-  /// How strongly large weights are held back, >= 0: the sum of their squares times this is added
-  /// to the mean square of the residuals in units of their standard deviation.
+  std::vector<int> hidden{32};  ///< units of each hidden layer: 0 to 3 layers of 1 to 256 units
+  int iterations = 600;  ///< largest number of iterations of the optimiser in all, 1 to 100,000
+  /// Penalty of large weights, >= 0: this times the sum of their squares is added to the mean
+  /// square of the standardised residuals.
   double decay = 1e-4;
-  /// What the model is expected to miss by, relative to the signal, 0 to 1: together with the noise
-  /// it makes up the deviation that a residual is measured in.
+  /// Expected error of the model relative to the signal, 0 to 1. Residuals are divided by the
+  /// standard deviation of this error and the noise together.
   double tolerance = 0.03;
-  std::uint64_t seed = 1;  ///< of the weights that the optimiser starts from
+  std::uint64_t seed = 1;  ///< for the initial weights
   int threads = 0;         ///< 0: one per hardware thread. Does not change the result
   Watch watch;             ///< throws Interrupted
 };
@@ -34,28 +34,30 @@ struct FacetNetworkFitOptions {
 /// Throws UsageError for options out of range.
 void validate(const FacetNetworkFitOptions& options);
 
-/// The thesis's neighbourhoods with a sigma of at most 0.65 times the range, at least four.
+/// The thesis's neighbourhoods with sigma up to 0.65 times the range, but at least four of them.
 std::vector<FacetScale> network_scales(double pixel_nm, double range_nm);
 
-/// Six bands of distances, up to 16/3 of the range: farther than electrons get inside, because what
-/// stands there still catches those that have left. At most 128 pixels, which leaves out bands of
-/// long ranges.
+/// Six bands of distances, up to 16/3 of the range. They extend farther than electrons travel
+/// inside the material, because the surface there still catches emitted electrons. The limits are
+/// at most 128 pixels, which leaves out bands for long ranges.
 std::vector<double> network_sky_edges(double pixel_nm, double range_nm);
 
 struct FacetNetworkFit {
   FacetNetworkParameters parameters;
-  double cost = 0;  ///< mean square of residuals in their deviations; near 1 is noise alone
+  /// Mean square of the standardised residuals; near 1 if only noise is left.
+  double cost = 0;
   int iterations = 0;
-  std::vector<ModelResidual> residuals;  ///< on the training images, one for each channel
-  std::vector<std::string> warnings;     ///< sentences: why the model may not be trusted
+  std::vector<ModelResidual> residuals;  ///< on the training images, one per channel
+  std::vector<std::string> warnings;     ///< sentences with reasons not to trust the model
 };
 
-/// Learns a network from images by L-BFGS (Ceres) on all used pixels at once, in rounds: the
-/// deviations that residuals are measured in come from the network's own images, because the noise
-/// of a pixel would favour those that happen to be dark. With standard errors the noise's variance
-/// goes with the signal as theirs does, image by image; without, all pixels weigh alike. Throws
-/// InvalidInput for images that cannot be used, of different or oblong pixels, or of a channel
-/// whose mean is not above 0; UsageError for options out of range.
+/// Trains a network on images by L-BFGS (Ceres), on all used pixels at once, in rounds. The
+/// standard deviations of residuals come from the network's own images: those of noisy pixels would
+/// favour pixels that happen to be dark. If there are standard errors, the noise's variance is
+/// proportional to the signal, with a factor for each image from its standard errors; otherwise all
+/// pixels have the same weight. Throws InvalidInput for images that cannot be used, of different or
+/// non-square pixels, or with a channel whose mean is not above 0; UsageError for options out of
+/// range.
 FacetNetworkFit fit_facet_network(const std::vector<TrainingImage>& images,
                                   const std::vector<std::string>& channels,
                                   const FacetNetworkFitOptions& options = {});

@@ -14,9 +14,9 @@ struct FilterBankFitOptions {
   std::vector<FacetScale> scales = thesis_scales();
   bool multi_resolution = false;  ///< see FilterBankParameters
 
-  /// Principal components of the bank's outputs whose eigenvalue of the correlation matrix is below
-  /// this are left out, >= 0 (thesis, 6.6: 0.1). Fewer components are less accurate on what was
-  /// trained on and safer on anything else; 0 keeps all.
+  /// Principal components of the bank's outputs are left out if their eigenvalue of the correlation
+  /// matrix is below this, >= 0 (thesis, 6.6: 0.1). Fewer components are less accurate on the
+  /// training images and safer on all others; 0 keeps all.
   double eigenvalue_cutoff = 0.1;
 
   int threads = 0;  ///< 0: one per hardware thread. Does not change the result
@@ -25,37 +25,38 @@ struct FilterBankFitOptions {
 struct FilterBankFit {
   FilterBankParameters parameters;
   std::vector<double> eigenvalues;  ///< of the outputs' correlation matrix, the largest first
-  int components = 0;               ///< kept
-  /// Of the least squares' matrix, its columns 1 and the components of outputs in units of their
-  /// deviation: about the root of the largest eigenvalue over the smallest one kept. Of the channel
-  /// where it is largest.
+  int components = 0;               ///< number of components kept
+  /// Condition number of the least-squares matrix, whose columns are 1 and the components of the
+  /// standardised outputs: about the root of the ratio of the largest to the smallest kept
+  /// eigenvalue. The largest number over the channels.
   double condition_number = 0;
-  std::vector<ModelResidual> residuals;  ///< on the training images, one for each channel
-  std::vector<std::string> warnings;     ///< sentences: why the model may not be trusted
+  std::vector<ModelResidual> residuals;  ///< on the training images, one per channel
+  std::vector<std::string> warnings;     ///< sentences with reasons not to trust the model
 };
 
-/// Learns a filter bank from images (thesis, 6.6): principal components of its outputs at all used
-/// pixels, weighted linear least squares of each channel, and the coefficients folded back to
-/// slopes and curvatures. A pixel weighs 1 / (standard error^2 + misfit^2), where the misfit is
-/// what a first fit with all weights alike leaves beyond the noise: weights by the noise alone
-/// would spend the model's freedom on dark pixels, whose noise is least, and it would be worse on
-/// others (docs/methods/filter_bank.md). Without standard errors all pixels weigh alike. Images are
-/// gone through block by block; nothing grows with their size but a triangle of 33 x 33 numbers per
-/// 5000 pixels or so. Throws InvalidInput for images that cannot be used or names that do not fit
-/// their channels, UsageError for a cut-off that is not a number >= 0.
+/// Trains a filter bank on images (thesis, 6.6). It computes principal components of the bank's
+/// outputs at all used pixels, fits each channel by weighted linear least squares, and converts the
+/// result to coefficients of slopes and curvatures. The weight of a pixel is 1 / (standard error^2
+/// + misfit^2); the misfit is the part of the residuals beyond the noise in a first fit with equal
+/// weights. Weights by the noise alone would spend the model's freedom on dark pixels, whose noise
+/// is smallest, at the expense of other pixels (docs/methods/filter_bank.md). Without standard
+/// errors all pixels have the same weight. Images are processed block by block; the memory grows
+/// with their size only by a triangle of 33 x 33 numbers per 5000 pixels or so. Throws InvalidInput
+/// for images that cannot be used or names that do not fit their channels, UsageError for a cut-off
+/// that is not a number >= 0.
 FilterBankFit fit_filter_bank(const std::vector<TrainingImage>& images,
                               const std::vector<std::string>& channels,
                               const FilterBankFitOptions& options = {});
 
-/// How far a model is off on images that it may or may not have seen, one entry for each channel.
-/// Pixels whose signal is not above 0 do not count in the relative error. Where the noise explains
-/// all of the difference, and chance a little more, `rms` is 0.
+/// The errors of a model on images, which may or may not be its training images; one entry per
+/// channel. Pixels whose signal is not above 0 do not count in the relative error. `rms` is 0 if
+/// the noise explains the whole difference.
 std::vector<ModelResidual> residuals_of(const ImageModel& model,
                                         const std::vector<TrainingImage>& images, int threads = 0);
 
-/// A bank with the one channel "signal" = offset + sum of gain times channel: a microscope's
-/// detector that sees all of them (thesis, Equation 6-3). InvalidInput unless there is a finite
-/// gain for each channel.
+/// Combines all channels of a bank into the one channel "signal" = offset + sum of gain times
+/// channel, for a microscope's detector that detects all of them (thesis, Equation 6-3). Throws
+/// InvalidInput unless there is a finite gain for each channel.
 FilterBankParameters fold_calibration(const FilterBankParameters& parameters,
                                       const std::vector<double>& gains, double offset);
 

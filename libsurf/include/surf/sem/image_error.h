@@ -6,29 +6,29 @@
 
 namespace surf {
 
-/// How far pixels of an image are off. All but the bias and the mean are relative to each pixel of
-/// the reference, where that is darker than a tenth of the mean to a tenth of the mean: what is
-/// nearly black would otherwise decide.
+/// Errors of the pixels of an image. All except the bias and the means are relative to the
+/// reference pixel. If the reference is darker than a tenth of its mean, they are relative to a
+/// tenth of the mean, because nearly black pixels would dominate otherwise.
 struct ImageError {
   std::int64_t pixels = 0;
-  double mean_signal = 0;  ///< of the reference, in its unit
+  double mean_signal = 0;  ///< mean of the reference, in its unit
   double mean = 0;         ///< of |value - reference|, relative
   double rms = 0;
   double percentile95 = 0;  ///< of |value - reference|, relative
   double largest = 0;
   double bias = 0;             ///< mean of value - reference over the mean signal
-  double noise = 0;            ///< rms that the image's own standard errors explain
-  double reference_noise = 0;  ///< and those of the reference
-  double beyond_noise =
-      0;  ///< rms that neither explains: what a model has wrong. 0 where they explain all
+  double noise = 0;            ///< rms explained by the image's standard errors
+  double reference_noise = 0;  ///< rms explained by the reference's standard errors
+  /// Rms that neither explains, which is the error of a model; 0 if they explain everything.
+  double beyond_noise = 0;
 };
 
-/// The darkest signal that errors are relative to, as a share of the mean.
+/// The smallest signal that errors are relative to, as a share of the mean.
 inline constexpr double darkest_share = 0.1;
 
-/// Of values beside a reference, pixel by pixel, with the standard errors of both (none: there are
-/// none). Throws InvalidInput for other numbers of them, no pixel, what is not finite, or a
-/// reference that is nowhere above 0.
+/// Compares values with a reference, pixel by pixel. Standard errors are optional (empty: none).
+/// Throws InvalidInput if the numbers of pixels differ, there is no pixel, a value is not finite,
+/// or the mean of the reference is not above 0.
 ImageError image_error(std::span<const double> values, std::span<const double> standard_errors,
                        std::span<const double> reference, std::span<const double> reference_errors);
 

@@ -5,25 +5,26 @@
 
 namespace surf {
 
-/// How steep and how curved a surface is from sample to sample: what a model has seen, or is asked
-/// for.
+/// The range of slopes and curvatures of a surface from sample to sample: of the surfaces that a
+/// model was trained on, or of one that it is applied to.
 struct SurfaceRange {
   double slope_deg_p99 = 0;  ///< 99 % of the samples are no steeper
   double slope_deg_max = 0;
-  double curvature_p99_per_nm = 0;  ///< of the larger of the two second derivatives along x and y
+  double curvature_p99_per_nm = 0;  ///< of the larger second derivative along x or y
   double curvature_max_per_nm = 0;
 
   friend bool operator==(const SurfaceRange&, const SurfaceRange&) = default;
 };
 
-/// By differences of neighbouring samples: slopes centred (on the rim one-sided), second
-/// differences inside. Throws InvalidInput for an invalid field or one with masked samples.
+/// Measures by differences of neighbouring samples: central differences for slopes (one-sided at
+/// the rim), second differences inside. Throws InvalidInput for an invalid field or one with masked
+/// samples.
 SurfaceRange surface_range(const HeightField& field);
 
-/// The range that holds both: maxima, of the percentiles too.
+/// The range that contains both: the maxima, also of the percentiles.
 SurfaceRange united(const SurfaceRange& a, const SurfaceRange& b);
 
-/// Share of the samples that are steeper than `slope_deg`.
+/// The share of the samples that are steeper than `slope_deg`.
 double share_steeper(const HeightField& field, double slope_deg);
 
 }  // namespace surf

@@ -18,14 +18,14 @@
 
 namespace surf {
 
-/// How far a model is off on a set of images, per channel. Noise is not the model's fault: where
-/// the images' own standard error is known its variance is subtracted.
+/// The error of a model on a set of images, for one channel. Noise is not an error of the model: if
+/// the standard error of the images is known, its variance is subtracted.
 struct ModelResidual {
   std::string channel;
-  double rms = 0;        ///< of prediction less image, the noise subtracted; counts per primary
+  double rms = 0;        ///< of prediction minus image, without the noise; counts per primary
   double noise_rms = 0;  ///< of the images' standard error
-  double mean_relative =
-      0;  ///< mean of |prediction - image| / image where that is above 0, noise included
+  /// Mean of |prediction - image| / image over pixels whose image is above 0, including the noise.
+  double mean_relative = 0;
   double mean_signal = 0;
   std::int64_t pixels = 0;
 };
@@ -33,25 +33,25 @@ struct ModelResidual {
 /// A surface that a model was trained on.
 struct TrainingScene {
   std::string name;
-  std::string sha256;                    ///< of the file, or of the made surface's heights
+  std::string sha256;                    ///< of the file, or of the heights of a generated surface
   int width = 0, height = 0;             ///< pixels
-  std::int64_t electrons = 0;            ///< per pixel; 0: unknown or spent by accuracy
-  bool held_out = false;                 ///< not learnt from: the model was only judged on it
-  std::vector<ModelResidual> residuals;  ///< on its images, per channel; or none
+  std::int64_t electrons = 0;            ///< per pixel; 0: unknown or set by an accuracy
+  bool held_out = false;                 ///< not used for training, only for testing
+  std::vector<ModelResidual> residuals;  ///< on its images, one per channel; or none
 };
 
-/// Where a model comes from: kept in its file for whoever uses it.
+/// The origin of a model, stored in its file.
 struct TrainingRecord {
   std::vector<TrainingScene> scenes;
   std::vector<ModelResidual> residuals;           ///< on the training images
-  std::vector<ModelResidual> held_out_residuals;  ///< on those held out; none without
-  SurfaceRange range;                             ///< of the surfaces learnt from
-  double condition_number = 0;                    ///< of the least squares; 0: none was solved
-  std::vector<std::string> warnings;              ///< as they were shown at training
+  std::vector<ModelResidual> held_out_residuals;  ///< on the held-out images, if there are any
+  SurfaceRange range;                             ///< of the training surfaces
+  double condition_number = 0;                    ///< of the least squares; 0: none were solved
+  std::vector<std::string> warnings;              ///< as shown during training
   std::map<std::string, std::string> notes;       ///< command, version, seed, physics ...
 };
 
-/// Everything that a model file holds.
+/// The content of a model file.
 struct TrainedModel {
   ModelScope scope;
   std::variant<SlopeModelParameters, FilterBankParameters, StoppingPointParameters,
@@ -60,7 +60,7 @@ struct TrainedModel {
   TrainingRecord record;
 };
 
-/// The model itself. Throws InvalidInput for parameters out of range.
+/// Makes the model. Throws InvalidInput for parameters out of range.
 std::shared_ptr<const ImageModel> make_model(const TrainedModel& trained);
 
 }  // namespace surf

@@ -11,20 +11,20 @@
 
 namespace surf {
 
-/// A surface and images of it, pixel on sample, to learn a model from.
+/// A surface and its images, pixel on sample, for the training of a model.
 struct TrainingImage {
   std::string name;          ///< for messages
   HeightField field;         ///< without masked samples
-  Edge edge = Edge::mirror;  ///< how it went on when the images were made
-  /// One per channel that is learnt, of the field's size, finite where used.
+  Edge edge = Edge::mirror;  ///< how the field was continued for the images
+  /// One image per trained channel, of the field's size, finite where used.
   std::vector<Grid<float>> images;
-  std::vector<Grid<float>>
-      standard_errors;  ///< of the same sizes, > 0 where used; or none: all weigh alike
-  Mask used;            ///< 0: the pixel is left out; or empty: all are used
+  /// Of the same sizes, > 0 where used; or none: all pixels have the same weight.
+  std::vector<Grid<float>> standard_errors;
+  Mask used;  ///< 0: the pixel is left out; empty: all are used
 };
 
-/// Throws InvalidInput, naming the image, for sizes that differ, values that are not finite, or if
-/// there are none or not the same number of channels in all.
+/// Throws InvalidInput, naming the image, for sizes that differ, values that are not finite, no
+/// images, and different numbers of channels.
 void validate(const std::vector<TrainingImage>& images);
 
 }  // namespace surf

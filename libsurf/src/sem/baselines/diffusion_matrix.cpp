@@ -52,10 +52,10 @@ void check(const ModelScope& scope, const DiffusionMatrixParameters& p) {
 /// Moments in Cartesian coordinates: x, y, z, xx, yy, zz, xy, xz, yz.
 using Moments = std::array<double, 9>;
 
-/// Through a facet over a unit of the plane, outward, and its derivatives by the slopes.
+/// The outward flux through a facet over a unit of the plane, and its derivatives by the slopes.
 WindowTerm flux(const Moments& m, double slope_x, double slope_y) {
   constexpr double even = 3.0 / 16, square = 15.0 / 16;
-  const double x = -slope_x, y = -slope_y;  // the normal's, z being 1
+  const double x = -slope_x, y = -slope_y;  // of the normal with z = 1
   const double area = std::sqrt(x * x + y * y + 1);
   const double along_x = m[3] * x + m[6] * y + m[7], along_y = m[6] * x + m[4] * y + m[8],
                along_z = m[7] * x + m[8] * y + m[5];
@@ -83,7 +83,7 @@ class Facets {
                   double slope_y) const {
     const double t = (dz_nm - lowest_) / step_;
     if (!(t > -1.5 && t < heights_ + 0.5)) return {};
-    // Quadratic B-spline about the nearest height.
+    // A quadratic B-spline about the nearest height.
     const int middle = static_cast<int>(std::floor(t + 0.5));
     const double u = t - middle;  // -1/2 to 1/2
     const double weight[] = {0.5 * (0.5 - u) * (0.5 - u), 0.75 - u * u,
@@ -156,8 +156,8 @@ class Facets {
   int reach_;
   double lowest_, step_;
   int heights_;
-  std::vector<std::vector<Moments>>
-      tables_;  // per channel: [column][height], times the pixel's area
+  // Per channel: [column][height], times the pixel's area.
+  std::vector<std::vector<Moments>> tables_;
 };
 
 }  // namespace

@@ -41,7 +41,7 @@ void check(const SlopeModelParameters& p, const SlopeChannel& channel) {
                          "All yields must be finite");
 }
 
-/// Yields relative to those of a surface across the beam; of all forms but tables.
+/// Yields relative to a surface perpendicular to the beam, for all forms except tables.
 void relative_yields(SlopeForm form, const SlopeRow& row, double* out) {
   const auto each = [&](const auto& yield) {
     for (int i = 0; i < row.count; ++i) out[i] = yield(row.secant[i], row.angle[i]);
@@ -61,7 +61,7 @@ void relative_yields(SlopeForm form, const SlopeRow& row, double* out) {
   }
 }
 
-/// Their derivatives by the slope; that of the angle is cos^2.
+/// Derivatives of the relative yields by the slope. The derivative of the angle is cos^2.
 double relative_derivative(SlopeForm form, double slope, double secant, double angle) {
   const double cosine = 1 / secant;
   switch (form) {
@@ -93,7 +93,8 @@ SlopeCurves::SlopeCurves(const SlopeModelParameters& p)
 
 void SlopeCurves::times_flat_yields(int count, double* const* out) const {
   for (std::size_t c = channels();
-       c-- > 0;)  // the first one last: it holds what all are multiples of
+       // The first channel comes last, because it holds the common factor of all.
+       c-- > 0;)
     for (int i = 0; i < count; ++i) out[c][i] = flat_yields_[c] * out[0][i];
 }
 

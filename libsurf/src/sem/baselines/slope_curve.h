@@ -14,14 +14,14 @@ struct SlopeRow {
 };
 
 /// A slope model's yields and their derivatives by the slope, tan theta. At a kink the derivative
-/// is the mean of those to both sides. What channels have in common is computed once.
+/// is the mean of the derivatives on both sides. Computations that channels share are made once.
 class SlopeCurves {
  public:
   /// Throws InvalidInput for parameters out of range.
   explicit SlopeCurves(const SlopeModelParameters& parameters);
 
   std::size_t channels() const { return tables_.size(); }
-  /// Into out[channel][pixel].
+  /// Writes to out[channel][pixel].
   void yields(const SlopeRow& row, double* const* out) const;
   void derivatives(const SlopeRow& row, double* const* out) const;
 

@@ -77,8 +77,8 @@ class SlopeEngine {
               const SlopeRow row = workers[w].row(y, columns, block.width);
               const std::vector<double*>& derivatives = derivatives_at(row, workers[w]);
               for (int x = 0; x < block.width; ++x) {
-                if (row.tangent[x] <= floor)
-                  continue;  // the mean of the one-sided derivatives of a length is 0
+                // The mean of the one-sided derivatives of a length is 0.
+                if (row.tangent[x] <= floor) continue;
                 double sum = 0;
                 for (std::size_t c = 0; c < weights.size(); ++c)
                   sum += weights[c](block.x + x, block.y + y) / unit * derivatives[c][x];
@@ -129,7 +129,7 @@ class SlopeEngine {
   struct Worker {
     Scratch scratch;
     AlignedVector<double> tangent, secant, angle, derivatives;
-    std::vector<double*> channels;  ///< into derivatives
+    std::vector<double*> channels;  ///< pointers into derivatives
 
     SlopeRow row(int y, int columns, int width) const {
       const std::ptrdiff_t at = std::ptrdiff_t{y} * columns;
@@ -184,7 +184,7 @@ struct SlopeModel {
 
 std::shared_ptr<const ImageModel> make_slope_model(const ModelScope& scope,
                                                    const SlopeModelParameters& parameters) {
-  facet_kernel(parameters.facet, 1);  // throws where it is out of range
+  facet_kernel(parameters.facet, 1);  // throws if it is out of range
   Slopes slopes{{parameters.facet}, SlopeCurves(parameters)};
   std::vector<std::string> names;
   for (const SlopeChannel& channel : parameters.channels) names.push_back(channel.name);

@@ -38,7 +38,7 @@ void check(const ModelScope& scope, const StoppingPointParameters& p) {
     if (!std::ranges::all_of(c.density_per_nm, [](double d) { return std::isfinite(d) && d >= 0; }))
       refuse(fmt::format("channel '{}' has densities below 0 or not finite", c.name),
              "Make the table again");
-    // Else the density would jump, and the image have a kink.
+    // Otherwise the density would jump, and the image would have a kink.
     for (std::size_t k = 0; k < static_cast<std::size_t>(p.rings); ++k) {
       const auto heights = static_cast<std::size_t>(p.heights);
       if (c.density_per_nm[k * heights] != 0 || c.density_per_nm[(k + 1) * heights - 1] != 0)
@@ -52,8 +52,8 @@ void check(const ModelScope& scope, const StoppingPointParameters& p) {
            "Use pixels that are larger, or another model");
 }
 
-/// For each pixel around: how many stop in its column above a height. The density is linear between
-/// heights, so what lies above is quadratic and smooth to its first derivative.
+/// For each surrounding pixel: the number of stopping points in its column above a height. The
+/// density is linear between heights, so this number is quadratic with a continuous derivative.
 class Columns {
  public:
   Columns(const ModelScope& scope, const StoppingPointParameters& p)
@@ -84,7 +84,7 @@ class Columns {
 
  private:
   struct Node {
-    double density = 0, above = 0;  // per nm; stops above it
+    double density = 0, above = 0;  // per nm; number of stopping points above
   };
   struct Table {
     StoppingRule rule;

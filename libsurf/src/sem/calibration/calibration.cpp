@@ -19,8 +19,8 @@ using Eigen::VectorXd;
 
 constexpr std::size_t most_channels = 8;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Smallest eigenvalue of the scaled normal matrix, relative to its largest, that is more than
-/// rounding of images kept as 32-bit floats.
+/// Smallest ratio of an eigenvalue of the scaled normal matrix to the largest one that is not just
+/// rounding of images stored as 32-bit floats.
 constexpr double rounding = 1e-13;
 
 void check(const CalibrationImages& images, const CalibrationOptions& options) {
@@ -65,7 +65,7 @@ void check(const CalibrationImages& images, const CalibrationOptions& options) {
   for (const double r : options.ratios) require_finite(r, "calibration ratio");
 }
 
-/// Which pixels count, and how they weigh: 0 for the others.
+/// The weights of the pixels; 0 for those that do not count.
 Grid<double> pixel_weights(const CalibrationImages& images, const CalibrationOptions& options,
                            Calibration& out) {
   Grid<double> weights(images.real.width(), images.real.height());
@@ -86,7 +86,7 @@ Grid<double> pixel_weights(const CalibrationImages& images, const CalibrationOpt
   return weights;
 }
 
-/// The columns that are fitted: the channels, or their one combination.
+/// The fitted columns: the channels, or their only combination.
 ModelImages columns_of(const CalibrationImages& images, const std::vector<double>& ratios) {
   if (ratios.empty()) return images.simulated;
   Grid<double> sum(images.real.width(), images.real.height());
@@ -98,12 +98,12 @@ ModelImages columns_of(const CalibrationImages& images, const std::vector<double
 
 struct Moments {
   double weight = 0, mean_real = 0, real = 0;  // real: sum of weight (E - mean)^2
-  VectorXd mean, cross;                        // of the columns; with E
+  VectorXd mean, cross;                        // means of the columns; products with E
   MatrixXd square;                             // of the columns
 };
 
-/// Sums about the means, or about 0 and the offset where it is known: in two passes, so that they
-/// stay exact where signals vary little.
+/// Sums relative to the means, or to 0 and the offset if that is known. They are computed in two
+/// passes, so that they are exact for signals that vary little.
 Moments moments(const Grid<double>& real, const ModelImages& columns, const Grid<double>& weights,
                 std::optional<double> offset) {
   const auto n = static_cast<Eigen::Index>(columns.size());
@@ -143,12 +143,12 @@ Moments moments(const Grid<double>& real, const ModelImages& columns, const Grid
 
 struct Solution {
   VectorXd gains;
-  MatrixXd inverse;  // of the normal matrix; of what is determined
+  MatrixXd inverse;  // of the normal matrix, restricted to what is determined
   double condition = 1;
 };
 
-/// The normal equations, of columns scaled to length 1, by eigenvalues: with dependent columns they
-/// give the smallest solution instead of none.
+/// Solves the normal equations, for columns scaled to length 1, by eigenvalues. For dependent
+/// columns this gives the smallest solution.
 Solution solve(const Moments& m, const std::vector<std::string>& names) {
   const VectorXd scale = m.square.diagonal().cwiseSqrt();
   const Eigen::Index n = scale.size();
@@ -160,7 +160,7 @@ Solution solve(const Moments& m, const std::vector<std::string>& names) {
       throw InvalidInput(names[static_cast<std::size_t>(c)],
                          "the simulated image is 0 in all pixels that count",
                          "Leave this channel out");
-    // A constant channel cannot be told from the offset.
+    // A constant channel cannot be distinguished from the offset.
     if (size <= 1e-7 * std::fabs(m.mean[c])) constant = true;
     else unit[c] = 1 / scale[c];
   }
@@ -179,7 +179,7 @@ Solution solve(const Moments& m, const std::vector<std::string>& names) {
   return s;
 }
 
-/// Covariance of the free gains and the offset, in terms of all gains.
+/// Sets the covariance of all gains and the offset from that of the free gains.
 void set_covariance(Calibration& c, const Moments& m, const Solution& s, double variance,
                     bool offset_fitted, const std::vector<double>& ratios) {
   const std::size_t n = c.channels.size() + 1;
@@ -203,7 +203,7 @@ void set_covariance(Calibration& c, const Moments& m, const Solution& s, double 
       c.covariance[i * n + j] = all(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
 }
 
-/// Sum of weight r^2; sets the correlation of neighbours.
+/// Returns the sum of weight r^2 and sets the correlation of neighbours.
 double residuals(Calibration& c, const CalibrationImages& images, const Grid<double>& weights) {
   const Grid<double> fit = calibrated_image(c, images.simulated);
   double sum = 0, squares = 0, products = 0;

@@ -13,12 +13,12 @@ constexpr double least_gain_in_stderrs = 2;
 constexpr double strong_correlation = 0.3;  // of neighbouring residuals
 constexpr double piled_up = 0.001;          // share of pixels at one extreme
 constexpr std::int64_t least_pile = 10;
-/// Pixels at one extreme are a pile where the fit spreads over this share of its range there: a
-/// flat part of the surface is no pile.
+/// Pixels at one extreme are a pile only if the fit varies over at least this share of its range
+/// there: a flat part of the surface is no pile.
 constexpr double spread_in_pile = 0.05;
 
-/// Correlation of two images over the pixels that count, about their means unless the offset is
-/// known.
+/// Correlation of two images over the pixels that count; relative to their means unless the offset
+/// is known.
 double correlation(const Grid<double>& a, const Grid<double>& b, const Grid<double>& weights,
                    bool about_means) {
   double w = 0, ma = 0, mb = 0;
@@ -38,7 +38,7 @@ double correlation(const Grid<double>& a, const Grid<double>& b, const Grid<doub
   return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
 }
 
-/// The two channels that are most alike, and how much.
+/// The two channels with the largest correlation, and the correlation.
 std::string most_alike(const CalibrationImages& images, const Grid<double>& weights,
                        bool about_means) {
   double most = 0;
@@ -84,7 +84,7 @@ void judge_gains(Calibration& c) {
                       "or not registered, or the other channel has taken over",
                       c.channels[i]));
     } else if (gain < least_gain_in_stderrs * error || gain == 0) {
-      vague += 1;  // a detector that does not see a channel is no fault
+      vague += 1;  // a detector that does not detect a channel is not an error
       c.warnings.push_back(
           fmt::format("the gain of {} is {:.3g} with a standard error of {:.2g}: it may be 0",
                       c.channels[i], gain, error));
@@ -93,7 +93,8 @@ void judge_gains(Calibration& c) {
   if (vague == c.gains.size()) c.outcome = CalibrationOutcome::doubtful;
 }
 
-/// Pixels at the lowest or the highest level where the fit is no constant: cut off, most likely.
+/// Warns of pixels at the lowest or the highest level where the fit is not constant: they are
+/// probably clipped.
 void judge_level(Calibration& c, const Grid<double>& real, const Grid<double>& fit,
                  const Grid<double>& weights, bool white) {
   double level = 0, fit_low = 0, fit_high = 0, pile_low = 0, pile_high = 0;
@@ -128,7 +129,7 @@ void judge(Calibration& c, const CalibrationImages& images, const CalibrationOpt
   const Grid<double> fit = calibrated_image(c, images.simulated);
   judge_level(c, images.real, fit, weights, false);
   judge_level(c, images.real, fit, weights, true);
-  // What rounding leaves has structure, too.
+  // Rounding errors have structure, too.
   if (c.residual_correlation > strong_correlation && 1 - c.explained > 1e-10)
     c.warnings.push_back(fmt::format(
         "residuals of neighbouring pixels have a correlation of {:.2f}: the model is off "

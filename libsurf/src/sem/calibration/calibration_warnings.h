@@ -5,8 +5,8 @@
 
 namespace surf {
 
-/// What is to be said of a fit: sets `outcome` (unless it is undetermined already) and `warnings`.
-/// `weights` are 0 for pixels that did not count.
+/// Judges a fit: sets `outcome` (unless it is undetermined already) and `warnings`. `weights` are 0
+/// for pixels that did not count.
 void judge(Calibration& c, const CalibrationImages& images, const CalibrationOptions& options,
            const Grid<double>& weights);
 

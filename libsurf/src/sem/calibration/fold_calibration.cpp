@@ -31,7 +31,7 @@ FilterBankParameters fold_calibration(const FilterBankParameters& parameters,
       signal.min_curvature[i] += gains[c] * channel.min_curvature.at(i);
     }
   }
-  make_filter_bank({}, folded);  // throws where something is out of range
+  make_filter_bank({}, folded);  // throws if something is out of range
   return folded;
 }
 

@@ -8,9 +8,10 @@
 namespace surf {
 namespace {
 
-constexpr double least_signal = 1e-3;  // of the image's mean absolute signal
+constexpr double least_signal = 1e-3;  // share of the image's mean absolute signal
 
-/// Sums over windows cut at the ends, of a row or column of `n` numbers `stride` apart.
+/// Replaces a row or column of `n` numbers, `stride` apart, by sums over windows that are cut at
+/// the ends.
 void window_sums(double* data, std::size_t n, std::size_t stride, std::size_t range,
                  std::vector<double>& line) {
   line.assign(n + 1, 0);  // cumulative
@@ -55,7 +56,7 @@ SlowGain slow_gain(const Grid<double>& real, const Grid<double>& signal, int ran
   count = box_sums(std::move(count), range_x_px, range_y_px);
   SlowGain out{Grid<double>(width, height, 1), Mask(width, height, 1), 0};
   for (std::size_t i = 0; i < e.size(); ++i) {
-    // Half a pixel: sums of ones are exact, and 0 means none.
+    // Compares with half a pixel: sums of ones are exact, and 0 means none.
     if (count.data()[i] > 0.5 && s.data()[i] != 0 &&
         std::fabs(s.data()[i]) >= least * count.data()[i]) {
       out.gain.data()[i] = e.data()[i] / s.data()[i];

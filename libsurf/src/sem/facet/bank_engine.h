@@ -11,7 +11,7 @@
 
 namespace surf {
 
-/// A filter bank's passes in float or double. Parameters and fields have been checked.
+/// The passes of a filter bank in float or double. Parameters and fields must have been checked.
 template <class T>
 class BankEngine {
  public:
@@ -28,14 +28,14 @@ class BankEngine {
     return pass_.blocks(z_nm.width(), z_nm.height());
   }
 
-  /// Told, from several threads, of all invariants at block i: for every scale its slope, largest
-  /// and smallest principal curvature, row by row and `columns` each.
+  /// Receives all invariants of block i: for every scale its slope, largest and smallest principal
+  /// curvature, row by row, `columns` numbers each. Called from several threads.
   using Sink = std::function<void(std::size_t i, const facet::Block& block, int columns,
                                   const std::vector<AlignedVector<T>>& scales)>;
   void invariants(const Grid<double>& z_nm, const Sink& sink) const;
 
  private:
-  /// What a worker needs to fit a block at all scales, some of them on coarser heights.
+  /// A worker's memory for fits of a block at all scales, some of them on coarser heights.
   struct Scratch {
     typename facet::FacetPass<T>::Scratch fine;
     AlignedVector<T> coarse, between;
@@ -53,8 +53,8 @@ class BankEngine {
   const FilterBankParameters& parameters_;
   ModelOptions options_;
   double pitch_x_nm_, pitch_y_nm_;
-  std::vector<int> fine_of_;   ///< [scale]: its index in pass_, or -1 where heights are subsampled
-  std::vector<int> scale_of_;  ///< back
+  std::vector<int> fine_of_;   ///< [scale]: its index in pass_, or -1 if its heights are subsampled
+  std::vector<int> scale_of_;  ///< inverse of fine_of_
   facet::FacetPass<T> pass_;
   std::vector<std::vector<facet::Weights<T>>> weights_;  ///< [scale][channel]
 };
@@ -62,7 +62,7 @@ class BankEngine {
 extern template class BankEngine<float>;
 extern template class BankEngine<double>;
 
-/// `work(engine)` with an engine of the precision that the options ask for.
+/// Calls `work(engine)` with an engine in the precision that the options ask for.
 template <class Work>
 auto run_bank(const FilterBankParameters& parameters, double pitch_x_nm, double pitch_y_nm,
               const ModelOptions& options, const Work& work) {

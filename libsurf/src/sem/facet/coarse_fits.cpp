@@ -19,14 +19,14 @@ FacetScale halved(const FacetScale& scale, int times) {
 
 constexpr double smooth[3] = {0.25, 0.5, 0.25};
 
-/// Which samples of a line stand for those from one before its first to one behind its last.
+/// The indices of the samples of a line from one before its first to one behind its last, clamped.
 std::vector<int> neighbours(int count) {
   std::vector<int> from;
   for (int i = -1; i <= count; ++i) from.push_back(std::clamp(i, 0, count - 1));
   return from;
 }
 
-/// Every other sample, smoothed, less a level. Sample i of a line is from[i + 1].
+/// Every other sample, smoothed, minus a level. Index i of a line is sample from[i + 1].
 Grid<double> halve(const Grid<double>& z, const std::vector<int>& from_x,
                    const std::vector<int>& from_y, double level) {
   Grid<double> out(static_cast<int>(from_x.size() - 1) / 2,
@@ -45,7 +45,7 @@ Grid<double> halve(const Grid<double>& z, const std::vector<int>& from_x,
   return out;
 }
 
-/// The transpose: adds to z.
+/// The transpose of `halve`: adds to z.
 void halve_transposed(const Grid<double>& out, const std::vector<int>& from_x,
                       const std::vector<int>& from_y, Grid<double>& z) {
   std::vector<double> line(z.width());
@@ -80,8 +80,8 @@ CoarseFits<T>::CoarseFits(const std::vector<FacetScale>& scales, double pitch_x_
     fit.radius = coarse.size / 2;
     fit.pass.emplace_back(std::vector{coarse}, pitch_x_nm * step, pitch_y_nm * step);
     levels_ = std::max(levels_, fit.level);
-    margin_ =
-        std::max(margin_, (coarse.size / 2 + 3) * step);  // the fit, smoothing and interpolation
+    // The fit, smoothing and interpolation.
+    margin_ = std::max(margin_, (coarse.size / 2 + 3) * step);
   }
   const int whole = 1 << levels_;
   margin_ = (margin_ + whole - 1) / whole * whole;
@@ -95,7 +95,8 @@ std::vector<int> CoarseFits<T>::continued(int count, Edge edge) const {
   return from;
 }
 
-/// The samples that a field of so many is interpolated from, and those that their fits look at.
+/// The coarse samples from which a line of `count` samples is interpolated, and those that their
+/// fits need.
 template <class T>
 typename CoarseFits<T>::Range CoarseFits<T>::range(const Fit& fit, int count) const {
   const int step = 1 << fit.level, first = margin_ / step - fit.radius;
@@ -106,7 +107,7 @@ template <class T>
 void CoarseFits<T>::load(const Grid<double>& z_nm, Edge edge, int threads, const Watch& watch) {
   if (levels_ == 0) return;
   threads = resolve_threads(threads);
-  // Relative to a height: smoothing would round what is constant.
+  // Relative to a height, because smoothing would round constant heights.
   Grid<double> z =
       halve(z_nm, continued(z_nm.width(), edge), continued(z_nm.height(), edge), z_nm(0, 0));
   for (int level = 1; level <= levels_; ++level) {
@@ -148,7 +149,7 @@ void CoarseFits<T>::fit_level(const Grid<double>& z, int width, int height, int 
     fit.floors = {std::max(fit.floors.slope, f.slope), std::max(fit.floors.curvature, f.curvature)};
 }
 
-/// What coarse samples are worth to the pixels of a block.
+/// The interpolation weights of coarse samples for the pixels of a block.
 template <class T>
 typename CoarseFits<T>::Worth CoarseFits<T>::worth(const Fit& fit, const Block& block,
                                                    int columns) const {
@@ -223,7 +224,7 @@ void CoarseFits<T>::transpose_fit(int scale, const Source& source, int columns, 
   const int strips = (width + columns - 1) / columns, step = 1 << fit.level;
   const Range rows = rows_of(fit, {0, 0, width, height});
   threads = resolve_threads(threads);
-  // Each strip by itself, so that the order of the sums does not depend on threads.
+  // Each strip has sums of its own, so that the order of additions does not depend on threads.
   std::vector<AlignedVector<T>> found(strips);
   std::vector<Worth> worths(strips);
   std::vector<AlignedVector<T>> weights(threads), samples(threads);

@@ -10,32 +10,31 @@
 
 namespace surf::facet {
 
-/// How often a neighbourhood's heights are halved before its fit (thesis, 6.8.4): as often as
-/// leaves its sigma at 0.84 coarse samples or more, so that the Gaussian is still sampled; never
-/// for uniform weights.
+/// How often the resolution of a neighbourhood's heights is halved before its fit (thesis, 6.8.4):
+/// as long as sigma stays at least 0.84 coarse samples, so that the Gaussian is still sampled;
+/// never for uniform weights.
 int halvings(const FacetScale& scale);
 
-/// Fits of wide neighbourhoods on a pyramid of coarser heights. Each level is the one below,
-/// smoothed by (1, 2, 1) / 4 along both axes, at every other sample; coefficients between its
-/// samples are interpolated linearly. The field is continued as its edge says as far as any of this
-/// reaches.
+/// Fits of wide neighbourhoods on a pyramid of coarser heights. Each level consists of every other
+/// sample of the level below, smoothed by (1, 2, 1) / 4 along both axes. Coefficients between
+/// coarse samples are interpolated linearly. The field is continued by `edge` as far as necessary.
 template <class T>
 class CoarseFits {
  public:
-  /// Of those scales that are halved at all. Only `load` makes fits.
+  /// Handles those of the scales that are halved. Only `load` makes fits.
   CoarseFits(const std::vector<FacetScale>& scales, double pitch_x_nm, double pitch_y_nm);
 
   bool has(int scale) const { return fits_[scale].level > 0; }
   void load(const Grid<double>& z_nm, Edge edge, int threads, const Watch& watch);
 
-  /// A scale's coefficients at a block's pixels, row by row, `columns` (those of FacetPass) apart;
-  /// 0 beyond its width.
+  /// The coefficients of a scale at a block's pixels, row by row, `columns` (those of FacetPass)
+  /// apart; 0 beyond the block's width.
   void at(int scale, const Block& block, int columns, AlignedVector<T>& memory,
           T* coefficients) const;
   const Floors<T>& floors(int scale) const { return fits_[scale].floors; }
 
-  /// The transpose of load and `at` for all scales that are halved: adds to `gradient`, times
-  /// `unit`.
+  /// The transpose of `load` and `at` for all halved scales: adds `unit` times the result to
+  /// `gradient`.
   using Source = typename FacetPass<T>::Source;
   void transpose(const Source& source, int columns, Edge edge, int threads, double unit,
                  Grid<double>& gradient) const;
@@ -44,8 +43,8 @@ class CoarseFits {
   using Planes = AlignedVector<T>;
   struct Fit {
     int level = 0, radius = 0;
-    std::vector<FacetPass<T>> pass;  ///< one, of the halved scale
-    int width = 0;                   ///< of its samples
+    std::vector<FacetPass<T>> pass;  ///< a single pass, of the halved scale
+    int width = 0;                   ///< number of coarse columns
     Planes planes;                   ///< K2 to K6 row by row
     Floors<T> floors;
   };

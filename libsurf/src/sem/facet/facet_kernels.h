@@ -10,10 +10,12 @@ namespace surf {
 /// The one-dimensional factors of the cubic facet fit along one axis (thesis, D.1 and D.2, written
 /// with the orthogonal polynomials of the weights). A factor is given at offsets 0 to radius: e0
 /// and e2 are even, o1 and o3 odd. With y for rows and x for columns, and heights and pitches in
-/// nm, the fit's
-///   K2 (slope along y) = o3_y e0_x - mix_x o1_y e2_x      K4 (half the second derivative along y)
-///   = e2_y e0_x K3 (slope along x) = e0_y o3_x - mix_y e2_y o1_x      K6 (the same along x) = e0_y
-///   e2_x K5 (mixed second derivative) = o1_y o1_x
+/// nm, the coefficients of the fit are
+///     K2 (slope along y)                        = o3_y e0_x - mix_x o1_y e2_x
+///     K3 (slope along x)                        = e0_y o3_x - mix_y e2_y o1_x
+///     K4 (half the second derivative along y)   = e2_y e0_x
+///     K5 (mixed second derivative)              = o1_y o1_x
+///     K6 (half the second derivative along x)   = e0_y e2_x
 /// each as a sum of factor times height over the neighbourhood.
 struct FacetKernel {
   int radius = 0;
@@ -24,8 +26,8 @@ struct FacetKernel {
   double mix = 0;          ///< mean square offset, nm^2
 };
 
-/// Throws InvalidInput for an even size, one outside 5 to 255, or a sigma that is neither 0 nor 0.3
-/// to 1000: narrower weights leave nothing to tell a cubic from a line with.
+/// Throws InvalidInput for an even size, a size outside 5 to 255, and a sigma that is neither 0 nor
+/// 0.3 to 1000. Narrower weights cannot distinguish a cubic from a line.
 FacetKernel facet_kernel(const FacetScale& scale, double pitch_nm);
 
 }  // namespace surf

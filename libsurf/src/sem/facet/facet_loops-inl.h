@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Compiled once for each instruction set (core/each_target.h). Everything is inlined into functions
-// that are compiled for it, and nothing of the standard library is called.
+// for that instruction set; nothing of the standard library is called.
 #include <utility>
 
 #include "core/each_target.h"
@@ -16,7 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace surf::facet::HWY_NAMESPACE {
 
-/// Vectors that are made together: what is broadcast serves them all, and all sums stay in
+/// Vectors that are computed together: they share what is broadcast, and all sums stay in
 /// registers.
 constexpr int vectors = 2;
 
@@ -34,8 +34,9 @@ struct Loops {
     store(p, sum + v);
   }
 
-  /// Both for a sum and a difference. Keeps GCC from loading b a second time: loads are what is
-  /// short. Clang does not allow it for vectors that the file's own target lacks.
+  /// Loads two vectors for a sum and a difference. Keeps GCC from loading b a second time, because
+  /// loads are the bottleneck. Clang does not allow this for vectors that the file's own target
+  /// lacks.
   HWY_INLINE static void load_pair(V& a, V& b, const T* p, const T* q) {
     load(a, p);
     load(b, q);
@@ -76,8 +77,8 @@ struct Loops {
     }
   }
 
-  /// A vector of two neighbouring rows of results, which share all but one of the rows that they
-  /// look at to each side.
+  /// A vector for each of two neighbouring rows of results. All but one of the rows that they need
+  /// on each side are common.
   struct Rows {
     V row[2] = {};
 
@@ -99,9 +100,9 @@ struct Loops {
     return rows;
   }
 
-  /// use(tap, k % 2, row, above, below) with what lies k rows above and below both rows, for k from
-  /// `begin` on. Each vector is loaded once: what is new beside one row lies beside the other a
-  /// step later.
+  /// Calls use(tap, k % 2, row, above, below) with the vectors k rows above and below each of both
+  /// rows, for k from `begin` on. Each vector is loaded once: it is used for one row, and for the
+  /// other row a step later.
   template <class Use>
   HWY_INLINE static void each_pair(const T* p, std::ptrdiff_t stride, const Tap<T>* taps, int begin,
                                    int radius, const Use& use) {
@@ -120,8 +121,8 @@ struct Loops {
     if (k == radius) step(k, 0);
   }
 
-  /// Sums (sign 1) or differences of samples above and below, filtered by a factor. In two halves,
-  /// so that sums need not wait for one another.
+  /// Filters sums (sign 1) or differences of samples above and below by a factor. The sum is split
+  /// in two halves, so that additions need not wait for one another.
   template <auto Factor, int Sign>
   HWY_INLINE static Rows filtered(const T* p, std::ptrdiff_t stride, const Tap<T>* taps, int begin,
                                   int radius) {
@@ -136,7 +137,7 @@ struct Loops {
     return half[0];
   }
 
-  /// The same by two factors; adds to `first` and `second`.
+  /// Filters by two factors at once; adds to `first` and `second`.
   template <auto First, int FirstSign, auto Second, int SecondSign>
   HWY_INLINE static void add_filtered(const T* p, std::ptrdiff_t stride, const Tap<T>* taps,
                                       int begin, int radius, Rows& first, Rows& second) {
@@ -201,7 +202,7 @@ struct Loops {
         };
         const T *const g2 = weight + x, *const g3 = g2 + columns, *const g4 = g3 + columns,
                        *const g5 = g4 + columns, *const g6 = g5 + columns;
-        // Odd factors change their sign.
+        // Odd factors change sign.
         Rows odd0, odd2;
         add_filtered<&F::o3, -1, &F::o1, -1>(g2, stride, taps, begin, radius, odd0, odd2);
         Rows m0 = times(g4, stride, t.e2);
@@ -220,7 +221,8 @@ struct Loops {
       }
   }
 
-  /// Rows become columns: in log2(lanes) steps that exchange halves of pairs, quarters, and so on.
+  /// Transposes a square of vectors, in log2(lanes) steps that exchange halves of pairs, quarters,
+  /// and so on.
   template <int Step, int... I>
   HWY_INLINE static void exchange(V& a, V& b, std::integer_sequence<int, I...>) {
     const V low = __builtin_shufflevector(a, b, (I & Step ? lanes + I - Step : I)...);
@@ -277,11 +279,11 @@ struct Loops {
     __builtin_memcpy(&x, each, sizeof x);
   }
 
-  /// 1 / root, and 0 where the root is 0: the mean of the one-sided derivatives of a length is 0
-  /// there.
+  /// 1 / length, or 0 if the length is 0, because the mean of the one-sided derivatives of a length
+  /// is 0 there.
   HWY_INLINE static void invert(V& length, T floor) { length = length > floor ? 1 / length : V{}; }
 
-  /// The coefficients of some pixels, and the roots of their invariants.
+  /// The coefficients of some pixels, and the roots in their invariants.
   struct Pixels {
     V k2, k3, k4, k5, k6;
 
@@ -300,7 +302,7 @@ struct Loops {
     }
   };
 
-  /// Adds a channel's share of a scale.
+  /// Adds the contribution of a scale to all channels.
   HWY_INLINE static void add_channels(const V& slope, const V& mean, const V& half,
                                       const Weights<T>* weights, int channels, std::ptrdiff_t plane,
                                       T* sum) {
@@ -385,8 +387,8 @@ struct Loops {
       }
   }
 
-  /// arctan of x >= 0, to 2e-16 (the rational function of Moshier's Cephes library; fractions turn
-  /// x to below 0.66). Without branches, so that vectors can do it.
+  /// arctan of x >= 0, to 2e-16 (the rational function of Moshier's Cephes library, with x reduced
+  /// to below 0.66). Without branches, so that it can be vectorised.
   HWY_INLINE static double arc_tangent(double x) {
     const bool large = x > 2.414213562373095, middle = x > 0.66;
     const double u = (large    ? -1

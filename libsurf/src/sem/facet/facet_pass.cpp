@@ -13,8 +13,8 @@
 namespace surf::facet {
 namespace {
 
-// With the widest neighbourhood of the thesis a block of so many rows and its moments stay in the
-// L2 cache.
+// A block of this many rows and its moments stay in the L2 cache, with the widest neighbourhood of
+// the thesis.
 constexpr int most_rows = 320;
 
 double sum_of_magnitudes(const std::vector<double>& factors) {
@@ -61,8 +61,8 @@ std::vector<Block> FacetPass<T>::blocks(int width, int height) const {
   return blocks;
 }
 
-/// Rows of the field that the block's fits look at, each once, those nearest to the block first, so
-/// that a smaller radius needs the first ones only.
+/// Lists the rows of the field that the block's fits need, each once, those nearest to the block
+/// first, so that a smaller radius needs only the first ones.
 template <class T>
 void FacetPass<T>::list_rows(int height, Edge edge, Scratch& s) const {
   const Block& block = s.block;
@@ -129,7 +129,7 @@ const T* FacetPass<T>::fit(int scale, Scratch& s) const {
   const int rows = s.block.rows, r = kernel.radius, stride = columns() + 2 * s.radius;
   const std::size_t row_size = static_cast<std::size_t>(moments) * columns();
   s.coefficients.resize(static_cast<std::size_t>(rows + 1) * coefficients * columns());
-  // Rows in their order, one more for their pairs, and what lies outside the block as it is listed.
+  // The rows in their order, one more for the last pair, and the rows outside the block as listed.
   s.moments.resize((rows + 2 * r + 1 + s.tile_rows[r] - rows) * row_size);
   T* const inside = s.moments.data() + r * row_size;
   T* const outside = inside + (rows + r + 1) * row_size;
@@ -164,8 +164,8 @@ void FacetPass<T>::scale_weights(const Scaling<T>& scaling, int height, T* row) 
     }
 }
 
-/// Weights of moments at all pixels of a column from weights of coefficients; what rows outside the
-/// field would get goes to those that stand for them.
+/// Computes weights of moments at all pixels of a column from weights of coefficients. Weights of
+/// rows outside the field are added to the rows that continue it.
 template <class T>
 void FacetPass<T>::transpose_along(const Kernel& kernel, Edge edge, const Block& column,
                                    const T* weights, T* planes, std::ptrdiff_t plane) const {
@@ -177,7 +177,7 @@ void FacetPass<T>::transpose_along(const Kernel& kernel, Edge edge, const Block&
     to[y] = planes + border_sample(y, height, edge) * moments * plane + column.x;
   const Tap<T>* const taps = kernel.along.data();
   loops_->along_transposed(weights, height, taps, 1, r, false, to, plane);
-  // Outside the field nothing is nearer than the field.
+  // Rows outside the field have no taps nearer than the field.
   for (int out = 1; out <= r; out += 2) {
     const int count = std::min(2, r + 1 - out);
     for (const int y : {1 - out - count, height - 1 + out})
@@ -185,8 +185,8 @@ void FacetPass<T>::transpose_along(const Kernel& kernel, Edge edge, const Block&
   }
 }
 
-/// Adds what some rows' weights of moments give the heights to `sums`, from `radius_` columns left
-/// of the field on; `turned` is memory for the moments.
+/// Adds the contribution of some rows' weights of moments to `sums`, beginning `radius_` columns
+/// left of the field; `turned` is memory for the transposed moments.
 template <class T>
 void FacetPass<T>::transpose_across(const Kernel& kernel, int width, const T* planes,
                                     std::ptrdiff_t plane, AlignedVector<T>& turned, T* sums) const {
@@ -208,8 +208,8 @@ void FacetPass<T>::transpose(Edge edge, int threads, const Source& source, doubl
                              Grid<double>& gradient) const {
   const int width = gradient.width(), height = gradient.height(), wide = columns();
   const int strips = (width + wide - 1) / wide, groups = (height + wide - 1) / wide;
-  // Moments of a row, one plane after the other; and sums of as many rows as strips are wide,
-  // turned, with what falls outside the field, which is folded back at the end.
+  // The moments of a row, one plane after the other; and transposed sums for as many rows as strips
+  // are wide. Parts outside the field are folded back at the end.
   const std::ptrdiff_t plane = std::ptrdiff_t{strips} * wide;
   const std::ptrdiff_t group_size = std::ptrdiff_t{wide} * moments * plane;
   const std::ptrdiff_t sum_size = (std::ptrdiff_t{width} + 2 * radius_ + 1) * wide;

@@ -13,18 +13,16 @@
 
 namespace surf::facet {
 
-/// Pixels that are fitted together: `columns` wide at most (those beyond the last count for
-/// nothing).
+/// Pixels that are fitted together: at most `columns` wide; columns beyond the width are ignored.
 struct Block {
   int x = 0, y = 0;
   int width = 0, rows = 0;
 };
 
-/// Fits of the cubic facet model at several neighbourhoods, as separable passes over blocks of
-/// pixels that stay in the cache. Heights go into T relative to one of the block's own, so that
-/// adding a constant changes nothing and float keeps what is high above zero. Fields may be smaller
-/// than the neighbourhoods. How pixels are divided into blocks depends on the vector unit and on
-/// nothing else.
+/// Fits of the cubic facet model in several neighbourhoods, as separable passes over blocks of
+/// pixels that stay in the cache. Heights are converted to T relative to a height of the block, so
+/// that adding a constant changes nothing, and float is precise enough far above zero. Fields may
+/// be smaller than the neighbourhoods. The division into blocks depends only on the vector unit.
 template <class T>
 class FacetPass {
  public:
@@ -34,11 +32,11 @@ class FacetPass {
   int scales() const { return static_cast<int>(kernels_.size()); }
   int columns() const { return loops_->columns; }
   const Operations<T>& loops() const { return *loops_; }
-  /// From left to right, then upwards: neighbours look at the same heights.
+  /// Blocks from left to right, then upwards: successive blocks use the same heights.
   std::vector<Block> blocks(int width, int height) const;
 
-  /// A worker's memory: the heights around a block, and what its fits need. It fits any block in
-  /// turn.
+  /// A worker's memory: the heights around a block, and workspace for its fits. It can be reused
+  /// for any block.
   struct Scratch {
     Block block;
     int radius = 0;
@@ -46,25 +44,26 @@ class FacetPass {
     std::vector<int> rows, index, tile_rows;
   };
 
-  /// Takes up the heights around a block for fits at all scales, or at one. `z_nm` is finite.
+  /// Loads the heights around a block for fits at all scales, or at one. `z_nm` must be finite.
   void load(const Grid<double>& z_nm, Edge edge, const Block& block, Scratch& scratch) const;
   void load(const Grid<double>& z_nm, Edge edge, const Block& block, Scratch& scratch,
             int scale) const;
 
-  /// The coefficients K2 to K6 of a scale at the pixels of the block that was loaded, row by row as
-  /// `Operations` has them. Until the next call.
+  /// The coefficients K2 to K6 of a scale at the pixels of the loaded block, row by row as in
+  /// `Operations`. Valid until the next call.
   const T* fit(int scale, Scratch& scratch) const;
 
-  /// What rounding alone makes of a plane among the heights of the block that was loaded.
+  /// The slopes and curvatures that rounding alone gives a plane at the heights of the loaded
+  /// block.
   Floors<T> floors(int scale, const Scratch& scratch) const;
 
-  /// Fills in, row by row, the weights of a scale's coefficients at the pixels of a column of
-  /// pixels: a block of the field's full height. Called from several threads.
+  /// Writes, row by row, the weights of a scale's coefficients at the pixels of a column of pixels:
+  /// a block of the field's full height. Called from several threads.
   using Source = std::function<void(int worker, int scale, const Block& column, T* weights)>;
 
-  /// The transpose of the fits: adds to `gradient` (of the size of the heights) the derivative, by
-  /// the heights, of the sum of weight times coefficient over all pixels, coefficients and scales,
-  /// times `unit`.
+  /// The transpose of the fits. Adds to `gradient` (of the size of the heights) `unit` times the
+  /// derivative by the heights of the sum of weight times coefficient over all pixels, coefficients
+  /// and scales.
   void transpose(Edge edge, int threads, const Source& source, double unit,
                  Grid<double>& gradient) const;
 
@@ -84,7 +83,7 @@ class FacetPass {
                         AlignedVector<T>& turned, T* sums) const;
 
   std::vector<Kernel> kernels_;
-  int radius_ = 0;  ///< the largest
+  int radius_ = 0;  ///< the largest radius
   const Operations<T>* loops_;
 };
 

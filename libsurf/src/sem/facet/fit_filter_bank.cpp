@@ -20,12 +20,12 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using facet::Block;
 
-// Above it, surfaces a little unlike those trained on get errors many times larger:
+// Above it, errors are many times larger on surfaces slightly different from the training surfaces:
 // docs/methods/filter_bank.md.
 constexpr double trusted_condition = 100;
 constexpr double pixels_per_unknown = 20;
 
-/// The triangle of a QR decomposition: all that least squares need of the rows.
+/// The triangle of a QR decomposition, which is all that least squares need from the rows.
 MatrixXd triangle(MatrixXd& rows) {
   const Eigen::Index n = rows.cols();
   if (rows.rows() < n) {
@@ -48,15 +48,15 @@ void merge(MatrixXd& sum, const MatrixXd& next) {
   sum = triangle(both);
 }
 
-/// Triangles of what all pixels say. Columns: 1, outputs; and for each channel those and its image,
-/// weighted.
+/// Triangles of the data of all pixels, with columns 1 and outputs. For each channel, the same
+/// columns and the image, weighted.
 struct Triangles {
   MatrixXd outputs;
   std::vector<MatrixXd> channels;
   std::int64_t pixels = 0;
 };
 
-/// The used pixels of a block, one per row: 1 and the bank's outputs; and where they lie.
+/// The used pixels of a block, one per row: 1 and the bank's outputs; and their indices.
 struct Rows {
   MatrixXd outputs;
   std::vector<std::size_t> pixels;
@@ -85,8 +85,8 @@ Rows collect(const TrainingImage& image, const Block& block, int columns,
   return rows;
 }
 
-/// With `misfit`, the variance of each channel that is not noise, pixels weigh 1 / (standard
-/// error^2 + misfit).
+/// With `misfit`, the variance of each channel beyond the noise, the weight of a pixel is 1 /
+/// (standard error^2 + misfit).
 Triangles reduce(const TrainingImage& image, const Rows& rows, const std::vector<double>& misfit) {
   Triangles result;
   result.pixels = static_cast<std::int64_t>(rows.pixels.size());
@@ -118,7 +118,7 @@ Triangles reduce(const std::vector<TrainingImage>& images, const FilterBankParam
     const BankEngine<double> engine(
         bank, field.pitch_x_nm, field.pitch_y_nm,
         {.edge = image.edge, .threads = threads, .double_precision = true});
-    // Merged in the order of the blocks, whichever thread was first.
+    // Merged in the order of the blocks, independent of the threads.
     std::vector<Triangles> parts(engine.blocks(field.z_nm).size());
     engine.invariants(field.z_nm,
                       [&](std::size_t i, const Block& block, int columns, const auto& scales) {
@@ -151,7 +151,7 @@ Components principal_components(const MatrixXd& outputs, std::int64_t pixels, do
   VectorXd unit = VectorXd::Zero(n);
   for (Eigen::Index j = 0; j < n; ++j) {
     const double deviation = standard.col(j).norm();
-    // What is the same everywhere tells nothing; rounding must not make it tell something.
+    // A constant output contains no information; rounding must not give it any.
     if (deviation > 1e-9 * std::abs(result.mean[j])) unit[j] = 1 / deviation;
   }
   standard = standard * unit.asDiagonal();
@@ -166,7 +166,7 @@ Components principal_components(const MatrixXd& outputs, std::int64_t pixels, do
   return result;
 }
 
-/// Least squares of a channel. Gives the condition number of its matrix.
+/// Fits a channel by least squares. Returns the condition number of the matrix.
 double solve(const MatrixXd& weighted, const Components& components, FilterBankChannel& channel) {
   const Eigen::Index n = weighted.cols() - 2, kept = components.directions.cols();
   MatrixXd a(weighted.rows(), kept + 1);
@@ -175,7 +175,7 @@ double solve(const MatrixXd& weighted, const Components& components, FilterBankC
                       components.directions;
   const VectorXd singular = Eigen::JacobiSVD<MatrixXd>(a).singularValues();
   const double condition = singular[0] / std::max(singular[kept], 1e-16 * singular[0]);
-  // Columns of one length lose fewer digits.
+  // Columns of equal length lose fewer digits.
   VectorXd length = a.colwise().norm().transpose();
   for (double& l : length)
     if (l == 0) l = 1;
@@ -241,7 +241,7 @@ FilterBankFit fit_filter_bank(const std::vector<TrainingImage>& images,
     const std::vector<double> none(options.scales.size());
     bank.channels.push_back({name, 0, none, none, none});
   }
-  make_filter_bank({}, bank);  // throws where something is out of range
+  make_filter_bank({}, bank);  // throws if something is out of range
   for (const TrainingImage& image : images) check_span(image.field);
 
   const Triangles sum = reduce(images, bank, options.threads, {});

@@ -56,7 +56,7 @@ Ended ended(ceres::TerminationType type) {
 
 Minimised ceres_minimise(const SmoothFunction& function, std::span<double> at,
                          const MinimiseOptions& options) {
-  const ceres::GradientProblem problem(new Problem(function));  // which owns it
+  const ceres::GradientProblem problem(new Problem(function));  // it takes ownership
   ceres::GradientProblemSolver::Options solver;
   solver.line_search_direction_type = options.search == Search::bfgs ? ceres::BFGS
                                       : options.search == Search::lbfgs

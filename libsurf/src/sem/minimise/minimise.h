@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Smooth functions of many numbers are minimised by Ceres, in the module `ceres`.
+// Smooth functions of many variables are minimised by Ceres, in the module `ceres`.
 #pragma once
 
 #include <functional>
@@ -9,17 +9,18 @@
 
 namespace surf::solvers {
 
-/// A smooth function of many numbers that is to be made small.
+/// A smooth function of many variables to be minimised.
 class SmoothFunction {
  public:
   virtual ~SmoothFunction() = default;
   virtual int size() const = 0;
-  /// False where it has no value. `gradient` is null where it is not wanted. What it throws passes
-  /// through.
+  /// Evaluates the function. Returns false if it has no value there. `gradient` is null if it is
+  /// not wanted. Exceptions pass through.
   virtual bool evaluate(const double* at, double* value, double* gradient) const = 0;
 };
 
-enum class Search { bfgs, lbfgs, conjugate_gradient };  ///< the last after Polak and Ribière
+/// conjugate_gradient is the method of Polak and Ribière.
+enum class Search { bfgs, lbfgs, conjugate_gradient };
 
 enum class Then { go_on, settled, stop };
 
@@ -27,11 +28,11 @@ struct MinimiseOptions {
   Search search = Search::lbfgs;
   int lbfgs_rank = 20;
   int most_iterations = 50;
-  int most_step_sizes = 20;  ///< of one line search
+  int most_step_sizes = 20;  ///< per line search
   double function_tolerance = 1e-6;
   double gradient_tolerance = 1e-10;
   double parameter_tolerance = 1e-8;
-  /// Told of each iteration, 0 being the start, and by how much the function fell.
+  /// Called after each iteration, 0 being the start, with the decrease of the function.
   std::function<Then(int iteration, double fell)> after;
 };
 
@@ -43,7 +44,7 @@ struct Minimised {
   double value = 0;
 };
 
-/// What the module `ceres` gives.
+/// The function of the module `ceres`.
 struct CeresLibrary {
   static constexpr ModuleName module{"ceres", "fits models and reconstructs surfaces",
                                      "Ceres (Debian: libceres3)", 200};
@@ -52,7 +53,7 @@ struct CeresLibrary {
                         const MinimiseOptions& options);
 };
 
-/// Lowers `function` from `at`.
+/// Minimises `function`, starting from `at`.
 inline Minimised minimise(const SmoothFunction& function, std::span<double> at,
                           const MinimiseOptions& options) {
   return surf::module<CeresLibrary>().minimise(function, at, options);

@@ -7,7 +7,7 @@
 
 namespace surf {
 
-/// Memory that begins at a cache line: vectors that lie across two of them load at half the speed.
+/// Memory that begins at a cache line: vectors that cross a cache line load at half the speed.
 template <class T>
 struct LineAllocator {
   using value_type = T;

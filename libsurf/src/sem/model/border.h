@@ -5,8 +5,8 @@
 
 namespace surf {
 
-/// The sample that stands for sample `i` of a line of `count` (at least 2), as `edge` says.
-/// Reflections and periods are repeated as often as it takes.
+/// The index of the sample that continues a line of `count` (at least 2) samples at index `i`, as
+/// `edge` says. Reflections and periods are repeated as often as necessary.
 inline int border_sample(int i, int count, Edge edge) {
   if (i >= 0 && i < count) return i;
   if (edge == Edge::flat) return i < 0 ? 0 : count - 1;

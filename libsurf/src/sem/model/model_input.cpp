@@ -13,8 +13,8 @@
 namespace surf {
 namespace {
 
-constexpr double most_span =
-    1e12;  // in pixels, and nm/pixel^2: the squares of curvatures fit into float
+// In pixels, and nm/pixel^2: the squares of curvatures fit into float.
+constexpr double most_span = 1e12;
 
 void check_finite(const Grid<double>& values, const Grid<double>& z_nm, const char* subject) {
   if (values.width() != z_nm.width() || values.height() != z_nm.height())

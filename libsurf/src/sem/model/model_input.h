@@ -8,21 +8,21 @@
 
 namespace surf {
 
-/// Throws InvalidInput where heights span so much that single precision cannot hold their
+/// Throws InvalidInput if the heights span so much that single precision cannot represent their
 /// curvatures.
 void check_span(const HeightField& field);
 
 /// Throws InvalidInput unless there is a finite image of the heights' size for each channel.
 void check_weights(const ModelImages& weights, std::size_t channels, const Grid<double>& z_nm);
 
-/// Throws InvalidInput unless the change of heights is finite and of their size.
+/// Throws InvalidInput unless the change of heights is finite and of the size of the heights.
 void check_change(const Grid<double>& dz_nm, const Grid<double>& z_nm);
 
-/// A power of two near the largest magnitude, by which values can be divided without a change to
-/// their digits, to keep them in single precision's range; 0 if all are 0.
+/// A power of two near the largest magnitude; 0 if all values are 0. Division by it keeps values in
+/// the range of single precision without changing their digits.
 double magnitude(const std::vector<double>& values);
 
-/// Throws InvalidInput unless there are 1 to 8 channels of different names, none empty.
+/// Throws InvalidInput unless there are 1 to 8 channels with different, non-empty names.
 void check_channels(const std::vector<std::string>& names, const char* subject);
 
 }  // namespace surf

@@ -12,16 +12,16 @@
 #include "surf/core/parallel.h"
 #include "surf/sem/image_model.h"
 
-// Models whose pixel is a sum over the surface around it: of kernel(offset, height above the pixel,
-// slope there), then a function of that sum. A Kernel has
-//   int reach() const                               columns to each side
-//   std::size_t channels() const
-//   WindowTerm term(channel, dx, dy, dz_nm, slope_x, slope_y) const      with its derivatives
-//   WindowSignal signal(channel, sum) const                              with its derivative
+// Models in which a pixel is a function of a sum over the surrounding surface of kernel(offset,
+// height above the pixel, slope there). A Kernel has
+//     int reach() const                               columns to each side
+//     std::size_t channels() const
+//     WindowTerm term(channel, dx, dy, dz_nm, slope_x, slope_y) const      with its derivatives
+//     WindowSignal signal(channel, sum) const                              with its derivative
 
 namespace surf {
 
-/// A part of the sum, and its derivatives by its arguments.
+/// A term of the sum, and its derivatives by its arguments.
 struct WindowTerm {
   double value = 0, by_height = 0, by_slope_x = 0, by_slope_y = 0;
 };
@@ -54,8 +54,8 @@ class WindowLinearization final : public Linearization {
 
   Grid<double> gradient(const ModelImages& weights) const override {
     check_weights(weights, kernel_->channels(), images_.front());
-    // Every place asks the pixels around it, those beyond the edge too: no two threads write to one
-    // place.
+    // Every place, also beyond the edge, collects from the pixels around it, so no two threads
+    // write to the same place.
     Grid<double> z = field_.none(), slope_x = z, slope_y = z;
     const int reach = kernel_->reach();
     rows(field_.height() + 2 * reach, [&](int row) {
@@ -124,7 +124,7 @@ class WindowLinearization final : public Linearization {
     by_own_height_[c](x, y) = own;
   }
 
-  /// What the pixels around (u, v) want of the height and the slopes there.
+  /// The derivatives by the height and the slopes at (u, v), collected from the surrounding pixels.
   WindowTerm collect(const ModelImages& weights, int u, int v) const {
     const int reach = kernel_->reach();
     WindowTerm sum;
@@ -145,8 +145,10 @@ class WindowLinearization final : public Linearization {
   PaddedField field_;
   int threads_;
   ModelImages images_;
-  ModelImages by_sum_;         // derivative of the signal by its sum
-  ModelImages by_own_height_;  // sum of the terms' derivatives: less of it is the pixel's own
+  ModelImages by_sum_;  // derivative of the signal by its sum
+  // Sum of the terms' derivatives by height; minus this is the derivative by the pixel's own
+  // height.
+  ModelImages by_own_height_;
 };
 
 template <class Kernel>

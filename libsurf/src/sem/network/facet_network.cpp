@@ -15,7 +15,7 @@ namespace surf {
 namespace {
 
 constexpr const char* subject = "facet network";
-constexpr double most = 1e6;  // of a weight or a bias
+constexpr double most = 1e6;  // largest weight or bias
 constexpr int widest_layer = 1024;
 
 void check_layer(const DenseLayer& layer, std::size_t number, int inputs) {

@@ -16,11 +16,12 @@ namespace surf {
 namespace {
 
 constexpr const char* subject = "training";
-// Of the range. The far bands are for what shadows and catches electrons outside, which no range
-// limits: without them level ground came out 2 % too dark where training surfaces are crowded.
+// Relative to the range. The far bands represent surfaces that shadow and catch electrons outside
+// the material, which the range does not limit. Without them level ground was 2 % too dark where
+// training surfaces are crowded.
 constexpr double widest_sigma = 0.65, sky_limits[] = {0, 0.13, 0.33, 0.67, 1.33, 2.67, 5.33};
 constexpr std::size_t fewest_scales = 4;
-constexpr double farthest_px = 128;  // of the sky: fields are continued by as much
+constexpr double farthest_px = 128;  // of the sky; fields are continued by as much
 
 }  // namespace
 
@@ -43,11 +44,11 @@ void validate(const FacetNetworkFitOptions& o) {
 
 namespace {
 
-/// Pixels that are used: inputs of the network, signals in units of the channels' means, and what
-/// share of the mean signal is variance, image by image.
+/// The used pixels: inputs of the network, signals in units of the channels' means, and the
+/// variance of the noise as a share of the mean signal, image by image.
 struct Lesson {
   TrainerData data;
-  std::vector<double> means, scales;  // of the inputs: taken off, divided by
+  std::vector<double> means, scales;  // of the inputs: mean to subtract, scale to divide by
 };
 
 double pixel_of(const std::vector<TrainingImage>& images) {
@@ -151,7 +152,7 @@ Lesson gather(const std::vector<TrainingImage>& images, const FacetNetworkParame
     for (std::size_t p = 0; p < pixels; ++p) square += std::pow(data.x[p * inputs + i] - mean, 2);
     const double deviation = std::sqrt(square / static_cast<double>(pixels));
     lesson.means[i] = mean;
-    // What never varies says nothing: whatever it is, the network does not see it.
+    // An input that never varies contains no information; the network ignores it.
     lesson.scales[i] = deviation > 1e-6 ? 1 / deviation : 0;
     for (std::size_t p = 0; p < pixels; ++p)
       data.x[p * inputs + i] =
@@ -179,7 +180,7 @@ std::vector<DenseLayer> first_guess(const std::vector<int>& sizes, std::uint64_t
   return layers;
 }
 
-/// The first layer on inputs as they are, instead of on inputs that were shifted and scaled.
+/// Converts the first layer from shifted and scaled inputs to the original inputs.
 void fold(const Lesson& lesson, DenseLayer& layer) {
   for (int o = 0; o < layer.outputs; ++o)
     for (int i = 0; i < layer.inputs; ++i) {

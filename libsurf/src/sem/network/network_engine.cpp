@@ -27,7 +27,7 @@ template <class T>
 struct NetworkEngine<T>::Worker {
   typename facet::FacetPass<T>::Scratch scratch, along;
   AlignedVector<T> inputs;          // [row][input][column]
-  AlignedVector<T> values, slopes;  // of the units at a row
+  AlignedVector<T> values, slopes;  // of the units, for one row
   AlignedVector<T> in, out, work, along_sky;
 };
 
@@ -86,7 +86,7 @@ void NetworkEngine<T>::take_inputs(const Grid<double>& z_nm, const Planes& plane
                 static_cast<int>(planes.samples.size()), view_.bands(), out + y * stride);
 }
 
-/// Runs the network over the block's inputs and writes what comes out.
+/// Runs the network on the block's inputs and writes the outputs to the images.
 template <class T>
 void NetworkEngine<T>::put(const Block& block, double unit, Worker& worker,
                            ModelImages& images) const {
@@ -157,8 +157,8 @@ Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm, const ModelIma
   const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
   Planes planes{{z_nm, z_nm(0, 0), 1, options_.edge, view_.reach(), columns}, {}};
   planes.samples = network::in_plane<T>(view_, planes.heights.stride);
-  // What the sky view gives back of a block lies in a tile of its own, added to the others'
-  // afterwards, in the order of the blocks, so that threads change nothing.
+  // The sky view's derivatives of each block go to a tile of their own. The tiles are added in the
+  // order of the blocks, so that threads do not change the result.
   const int reach = view_.reach();
   const std::ptrdiff_t tile_stride = columns + 2 * reach;
   std::vector<std::ptrdiff_t> to;
@@ -209,7 +209,7 @@ Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm, const ModelIma
       for (int y = -reach; y < block.rows + reach; ++y) {
         const int row = border_sample(block.y + y, z_nm.height(), options_.edge);
         const T* const from = given[i].tile.data() + (y + reach) * tile_stride + reach;
-        // Beyond the block's width there are none but zeros: their weights are 0.
+        // Beyond the block's width all values are 0, because their weights are 0.
         for (int x = -reach; x < columns + reach; ++x)
           if (from[x] != 0)
             gradient(border_sample(block.x + x, z_nm.width(), options_.edge), row) +=

@@ -13,8 +13,8 @@
 
 namespace surf {
 
-/// A network's passes in float or double. Parameters and fields have been checked. Without layers
-/// there are its inputs only.
+/// The passes of a network in float or double. Parameters and fields must have been checked.
+/// Without layers only the inputs are available.
 template <class T>
 class NetworkEngine {
  public:
@@ -31,7 +31,8 @@ class NetworkEngine {
                         const Kept& kept) const;
   ModelImages change(const Grid<double>& z_nm, const Grid<double>& dz_nm, const Kept& kept) const;
 
-  /// Told, from several threads, of the inputs at a block: row after row, each `columns` long.
+  /// Receives the inputs of a block: row after row, each `columns` long. Called from several
+  /// threads.
   using Sink = std::function<void(const facet::Block& block, int columns, const T* inputs)>;
   void inputs(const Grid<double>& z_nm, const Sink& sink) const;
 
@@ -53,7 +54,7 @@ class NetworkEngine {
   std::vector<T> lengths_;  ///< of the scales
   std::vector<T> numbers_;  ///< of the layers, one after the other
   std::vector<network::Layer<T>> layers_;
-  int inputs_, units_ = 0, widest_ = 0;  ///< units: of all layers; widest: of inputs and layers
+  int inputs_, units_ = 0, widest_ = 0;  ///< units of all layers; widest of inputs and layers
 };
 
 extern template class NetworkEngine<float>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled once for each instruction set, as facet_loops-inl.h.
+// Compiled once for each instruction set, like facet_loops-inl.h.
 #include "core/each_target.h"
 #include "sem/network/network_operations.h"
 
@@ -23,13 +23,13 @@ struct Loops {
     else return __builtin_sqrt(x);
   }
 
-  /// max(x, 0), without a comparison, which would keep loops from being made into vectors.
+  /// max(x, 0) without a comparison, which would prevent vectorisation.
   HWY_INLINE static T positive(T x) {
     if constexpr (sizeof(T) == sizeof(float)) return T(0.5) * (x + __builtin_fabsf(x));
     else return T(0.5) * (x + __builtin_fabs(x));
   }
 
-  /// What a scale's inputs are made of, at a pixel.
+  /// The quantities from which a scale's inputs at a pixel are computed.
   struct Facet {
     T gg, r, mean, mean_r, split, difference, along, along_r;  // r: fourth roots of 1 + square
   };
@@ -46,7 +46,7 @@ struct Loops {
     f.along_r = root(root(1 + f.along * f.along));
     return f;
   }
-  /// Of c(x) = x / r, r = (1 + x^2)^(1/4).
+  /// The derivative of c(x) = x / r, r = (1 + x^2)^(1/4).
   HWY_INLINE static T slope(T x, T r) { return (1 + T(0.5) * x * x) / ((1 + x * x) * r); }
 
   HWY_INLINE static void facets(const T* k, int rows, T length, T* out, std::ptrdiff_t stride) {
@@ -61,8 +61,8 @@ struct Loops {
       }
   }
 
-  /// Derivatives of the four inputs by what they are made of: |g|^2, trace, the two parts of the
-  /// difference.
+  /// Derivatives of the four inputs by the quantities in Facet: |g|^2, trace, and the two parts of
+  /// the difference.
   struct Slopes {
     T gg, mean, difference, mixed, along;
   };
@@ -173,8 +173,8 @@ struct Loops {
       }
       first = end;
     }
-    // Samples of a direction lie in few rows and overlap: what was just written would be waited
-    // for. So one of each direction after the other.
+    // Samples of one direction lie in few rows and overlap, so that an addition would wait for the
+    // one before. Therefore one sample of each direction is handled after the other.
     const int apart = count / 16;
     for (int start = 0; start < apart; ++start)
       for (int i = start; i < count; i += apart) {
@@ -193,7 +193,7 @@ struct Loops {
                                     int bands, T* out) {
     for (int i = 0; i < (2 * bands + 1) * columns; ++i) out[i] = 0;
     T* const open = out + 2 * bands * columns;
-    T seen[columns], rate[columns];  // and the derivative of its logarithm
+    T seen[columns], rate[columns];  // rate: derivative of the logarithm of seen
     for (int x = 0; x < columns; ++x) seen[x] = T(1) / 16, rate[x] = 0;
     for (int i = 0; i < count; ++i) {
       const SkySample<T>& a = samples[i];
@@ -218,8 +218,8 @@ struct Loops {
     }
   }
 
-  /// sums[o] = start + sum over i of matrix[o * row + i * column] * in[i], four outputs at a time
-  /// so that what is loaded serves them all.
+  /// sums[o] = start + sum over i of matrix[o * row + i * column] * in[i], for four outputs at a
+  /// time, which share the loaded values.
   HWY_INLINE static void multiply(const T* matrix, std::ptrdiff_t row, std::ptrdiff_t column,
                                   const T* start, int inputs, int outputs, const T* in, T* out) {
     typedef T V [[gnu::vector_size(SEMSURF_VECTOR_BYTES)]];
@@ -269,7 +269,7 @@ struct Loops {
       else
         for (int i = 0; i < n; ++i) {
           const T q = root(1 + values[i] * values[i]);
-          // For a large negative o the sum would be lost in rounding.
+          // For large negative o the sum would lose all digits.
           values[i] = values[i] > 0 ? values[i] + q : 1 / (q - values[i]);
           slopes[i] = values[i] / q;
         }

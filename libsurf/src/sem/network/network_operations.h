@@ -7,9 +7,9 @@
 
 namespace surf::network {
 
-inline constexpr int facet_inputs = 4;  ///< of a scale
+inline constexpr int facet_inputs = 4;  ///< inputs per scale
 
-/// A layer as the loops take it: see DenseLayer.
+/// A layer in the form that the loops need: see DenseLayer.
 template <class T>
 struct Layer {
   int inputs, outputs;
@@ -17,7 +17,7 @@ struct Layer {
   const T* biases;
 };
 
-/// A sample that the sky view looks at: where it lies from a pixel, and the weight of its band and
+/// A sample of the sky view: its position relative to a pixel, its band, and the weight of band and
 /// direction.
 template <class T>
 struct SkySample {
@@ -25,25 +25,25 @@ struct SkySample {
   T per_distance;  ///< 1 / nm
   T weight;
   int band;
-  bool last;  ///< of its direction
+  bool last;  ///< the last sample of its direction
 };
 
-/// The inner loops. Rows of inputs, outputs and weights hold
-/// their numbers one after the other, each `columns` long, as facet::Operations has them.
+/// The inner loops. Rows of inputs, outputs and weights store their numbers one after the other,
+/// each `columns` long, as in facet::Operations.
 template <class T>
 struct Operations {
   int columns;
 
-  /// Inputs of a scale from its coefficients, into out[row * stride].
+  /// Computes the inputs of a scale from its coefficients, into out[row * stride].
   void (*facets)(const T* k, int rows, T length, T* out, std::ptrdiff_t stride);
-  /// Weights of coefficients from weights of those inputs.
+  /// Computes weights of coefficients from weights of these inputs.
   void (*facets_back)(const T* k, int rows, T length, const T* weight, std::ptrdiff_t stride,
                       T* out);
-  /// How the inputs change as the coefficients do.
+  /// Computes the change of the inputs as the coefficients change by `dk`.
   void (*facets_change)(const T* k, const T* dk, int rows, T length, T* out, std::ptrdiff_t stride);
 
-  /// Inputs of a row from the heights `z` at its first pixel: mean and mean square of each band,
-  /// the sky.
+  /// Computes the sky inputs of a row from the heights `z` at its first pixel: mean and mean square
+  /// of each band, then the visible sky.
   void (*sky)(const T* z, const SkySample<T>* samples, int count, int bands, T* out);
   /// Adds the weights of the heights to `dz`, where sample i lies at to[i]; `work` holds two
   /// rows for each sample.
@@ -52,16 +52,16 @@ struct Operations {
   void (*sky_change)(const T* z, const T* dz, const SkySample<T>* samples, int count, int bands,
                      T* out);
 
-  /// Values and slopes of all units, layer after layer, from a row of inputs.
+  /// Computes values and slopes of all units, layer after layer, from a row of inputs.
   void (*forward)(const Layer<T>* layers, int count, const T* in, T* values, T* slopes);
-  /// Weights of the inputs from those of the outputs; `work` holds twice the widest layer.
+  /// Computes weights of the inputs from those of the outputs; `work` holds twice the widest layer.
   void (*backward)(const Layer<T>* layers, int count, const T* slopes, const T* weight, T* work,
                    T* out);
-  /// How the outputs change as the inputs do.
+  /// Computes the change of the outputs as the inputs change by `in`.
   void (*change)(const Layer<T>* layers, int count, const T* slopes, const T* in, T* work, T* out);
 };
 
-/// The best that the processor has.
+/// The fastest loops that the processor supports.
 template <class T>
 const Operations<T>& operations();
 

@@ -15,17 +15,20 @@
 namespace surf {
 namespace {
 
-using Matrix = Eigen::MatrixXf;  // a column for each pixel
+using Matrix = Eigen::MatrixXf;  // one column per pixel
 using Row = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr std::size_t pixels_at_once = 512;   // their activations stay in the cache
-constexpr std::size_t at_once_in_a_part = 8;  // sums of a part are merged with others' in order
+constexpr std::size_t pixels_at_once = 512;  // their activations stay in the cache
+// Sums of a part are merged with others' in order.
+constexpr std::size_t at_once_in_a_part = 8;
 constexpr int lbfgs_rank = 40;
-constexpr double faintest = 0.02;  // of the mean signal: below, the noise is taken as there
+// Share of the mean signal; below it the noise is assumed to be as at this signal.
+constexpr double faintest = 0.02;
 
 struct Shape {
   std::vector<int> sizes;
-  std::vector<std::size_t> starts;  // of the layers' numbers: weights [output][input], then biases
+  // Of the layers' numbers: weights [output][input], then biases.
+  std::vector<std::size_t> starts;
   std::size_t numbers = 0;
 };
 
@@ -40,7 +43,7 @@ Shape shape_of(const std::vector<DenseLayer>& layers) {
   return shape;
 }
 
-/// Layers in single precision, and their forward and backward pass over some pixels.
+/// Layers in single precision, with forward and backward passes over some pixels.
 class Net {
  public:
   Net(const Shape& shape, const double* numbers) {
@@ -79,7 +82,7 @@ class Net {
     }
   }
 
-  /// Adds to `gradient` from weights of the outputs.
+  /// Adds to `gradient`, given the weights of the outputs.
   void backward(const Pass& pass, Matrix weight, const Shape& shape, double* gradient) const {
     for (std::size_t l = weights_.size(); l-- > 0;) {
       weight.array() *= pass.slopes[l].array();
@@ -139,8 +142,8 @@ class Cost final : public solvers::SmoothFunction {
     return std::isfinite(*cost);
   }
 
-  /// Deviations from what the network gives now. The signal's own noise would favour pixels that
-  /// happen to be dark.
+  /// Sets the standard deviations of residuals from the network's current outputs. Those of the
+  /// noisy signals would favour pixels that happen to be dark.
   void weigh(const double* numbers) {
     if (!data_.has_noise) return;
     const Net net(shape_, numbers);
@@ -190,7 +193,7 @@ class Cost final : public solvers::SmoothFunction {
   const TrainerOptions& options_;
   const Shape& shape_;
   std::size_t pixels_;
-  std::vector<float> precision_;  // of each residual
+  std::vector<float> precision_;  // 1 / variance of each residual
   mutable double residual_ = 0;
 };
 
@@ -213,8 +216,8 @@ TrainerResult train_network(const TrainerData& data, const TrainerOptions& optio
   how.parameter_tolerance = 1e-12;
 
   TrainerResult result;
-  // A rough network tells the deviations, a better one tells them again, and the last round uses
-  // them.
+  // The first round gives rough standard deviations, the second round better ones, and the last
+  // round uses them.
   constexpr double shares[] = {0.15, 0.25, 0.6};
   for (const double share : shares) {
     if (share != shares[0]) cost.weigh(numbers.data());

@@ -8,14 +8,14 @@
 
 namespace surf {
 
-/// What a network is to learn, pixel by pixel.
+/// The training data of a network, pixel by pixel.
 struct TrainerData {
   int inputs = 0, outputs = 0;
   std::vector<float> x;       ///< [pixel][input]
   std::vector<float> y;       ///< [pixel][output]
-  std::vector<int> image;     ///< [pixel]: the image that it is of
-  std::vector<double> noise;  ///< [image][output]: variance of the noise over the signal
-  bool has_noise = false;     ///< without, all pixels weigh alike
+  std::vector<int> image;     ///< [pixel]: number of the pixel's image
+  std::vector<double> noise;  ///< [image][output]: variance of the noise divided by the signal
+  bool has_noise = false;     ///< false: all pixels have the same weight
   double tolerance = 0;       ///< see FacetNetworkFitOptions
 };
 
@@ -27,11 +27,11 @@ struct TrainerOptions {
 };
 
 struct TrainerResult {
-  double cost = 0;  ///< mean over pixels and outputs, without what the weights add
+  double cost = 0;  ///< mean over pixels and outputs, without the penalty of the weights
   int iterations = 0;
 };
 
-/// Improves the layers. Same bytes for any number of threads. Throws Interrupted.
+/// Trains the layers. The result does not depend on the number of threads. Throws Interrupted.
 TrainerResult train_network(const TrainerData& data, const TrainerOptions& options,
                             std::vector<DenseLayer>& layers);
 

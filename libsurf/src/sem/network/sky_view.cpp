@@ -10,9 +10,9 @@ namespace surf::network {
 namespace {
 
 constexpr int directions = 16;
-constexpr int most_steps = 2;  // of a direction in a band
+constexpr int most_steps = 2;  // per direction and band
 
-/// Of the four quarters of the plane's directions: turned by 90 degrees they give the others.
+/// The directions of one quadrant; rotations by 90 degrees give the others.
 struct Step {
   int dx, dy;
 };
@@ -27,7 +27,8 @@ std::vector<int> steps_within(double from_nm, double to_nm, double step_nm) {
     for (int k = first; k <= last; ++k) all.push_back(k);
     return all;
   }
-  // At a quarter and at three quarters of the band, in its logarithm where it does not begin at 0.
+  // At 0.25 and 0.8 of the band on a logarithmic scale (from the first step if the band begins at
+  // 0).
   const double low = std::max<double>(first, from_nm / step_nm), ratio = last / low;
   const int near =
       std::clamp(static_cast<int>(std::lround(low * std::pow(ratio, 0.25))), first, last - 1);
@@ -61,7 +62,7 @@ SkyPlane<T>::SkyPlane(const Grid<double>& z_nm, double level, double unit, Edge 
                       int columns)
     : reach(around) {
   const int width = z_nm.width(), height = z_nm.height();
-  const int whole = (width + columns - 1) / columns * columns;  // strips are computed whole
+  const int whole = (width + columns - 1) / columns * columns;  // only whole strips are computed
   stride = whole + 2 * std::ptrdiff_t{reach};
   values.resize(static_cast<std::size_t>(stride * (height + 2 * reach)));
   for (int y = -reach; y < height + reach; ++y) {

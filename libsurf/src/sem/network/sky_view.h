@@ -11,15 +11,16 @@
 
 namespace surf::network {
 
-/// Which samples the sky view looks at: in 16 directions, each a whole number of its shortest step
-/// of samples away, so that a quarter turn of the surface turns the outcome; in each band of
-/// distances at most two, and where a band has none the nearest step to its far end.
+/// The samples of the sky view, in 16 directions. Each is at a whole multiple of its direction's
+/// shortest step of samples, so that rotating the surface by 90 degrees rotates the outcome. Each
+/// band of distances has at most two samples per direction; if it has none, the step nearest to its
+/// far end is used.
 class SkyView {
  public:
   struct Sample {
     int dx, dy, band;
     double distance_nm, weight;
-    bool last;  ///< of its direction
+    bool last;  ///< the last sample of its direction
   };
 
   SkyView(const std::vector<double>& edges_nm, double pitch_nm);
@@ -35,8 +36,7 @@ class SkyView {
   std::vector<Sample> samples_;
 };
 
-/// Heights in T, relative to the field's first, with what lies around within `reach` as `edge`
-/// says.
+/// Heights in T, relative to the field's first height, continued by `edge` as far as `reach`.
 template <class T>
 struct SkyPlane {
   SkyPlane() = default;
@@ -49,7 +49,7 @@ struct SkyPlane {
   AlignedVector<T> values;
 };
 
-/// The samples as the loops take them, in a plane of that stride.
+/// The samples in the form that the loops need, for a plane with this stride.
 template <class T>
 std::vector<SkySample<T>> in_plane(const SkyView& view, std::ptrdiff_t stride);
 

@@ -17,12 +17,12 @@ constexpr double least_expected = 25;
 
 double below(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
 
-/// Probability of (from, to), exact in both tails.
+/// The probability of (from, to), accurate in both tails.
 double between(double from, double to) {
   return from > 0 ? below(-from) - below(-to) : below(to) - below(from);
 }
 
-/// The standard normal number of x.
+/// The standard normal number that corresponds to x.
 double score(const LogNormalCounts& d, double x) {
   const double y = (x - d.median) / d.scale;
   if (d.shape < 1e-9) return y;
@@ -46,7 +46,7 @@ CountFit test(const CountHistogram& counts, const Distribution& distribution, in
     cells.back().expected += expected;
     rest -= expected;
   }
-  cells.back().expected += std::max(rest, 0.0);  // counts larger than any seen
+  cells.back().expected += std::max(rest, 0.0);  // counts larger than any observed one
   CountFit fit;
   for (const Cell& c : cells)
     fit.chi_squared += (c.seen - c.expected) * (c.seen - c.expected) / std::max(c.expected, 1e-12);

@@ -12,9 +12,9 @@
 namespace surf {
 namespace {
 
-constexpr double cut = 3.5;                     // standard errors from the line
+constexpr double cut = 3.5;                     // in standard errors from the line
 constexpr double most_saturated = 0.005;        // share of a block's pixels
-constexpr double core_share = 0.3;              // of the blocks, to find where they crowd
+constexpr double core_share = 0.3;              // share of the blocks that locates the cluster
 constexpr double lower_cut = 4, upper_cut = 1;  // standard deviations of slow shares
 constexpr int wanted_blocks = 20;
 constexpr int least_blocks = 5;
@@ -25,15 +25,16 @@ double middle(std::vector<double> values) {
   return *at;
 }
 
-/// What choosing tells of a block.
+/// The class of a block.
 enum Flatness : char { structured, flat, typical };
 
 struct Crowd {
   double centre = 0, deviation = 0;
 };
 
-/// Flat blocks crowd at the slow share of the noise, with structure above them. Where they crowd is
-/// about the narrowest interval with a share of all; how narrowly, what lies below it tells.
+/// Flat blocks cluster at the slow share of the noise; blocks with structure lie above. The cluster
+/// is located at the narrowest interval with a given share of all blocks. Its width is estimated
+/// from the blocks below its centre.
 Crowd find_crowd(const std::vector<double>& sorted) {
   const std::size_t n = sorted.size();
   const std::size_t core =
@@ -55,8 +56,8 @@ Crowd find_crowd(const std::vector<double>& sorted) {
   return crowd;
 }
 
-/// Blocks below the upper cut are flat. Of these the typical ones are as far from the crowd's
-/// centre on either side: the others' correlations would be too small.
+/// Blocks below the upper cut are flat. The typical ones among them lie within the same distance on
+/// either side of the cluster's centre; the others have too little correlation.
 std::vector<char> choose_flat(const std::vector<FlatSample>& samples, bool& clear) {
   std::vector<double> sorted;
   for (const FlatSample& s : samples)
@@ -70,8 +71,8 @@ std::vector<char> choose_flat(const std::vector<FlatSample>& samples, bool& clea
     if (samples[i].squares > 0 && from >= -lower_cut && from <= upper_cut)
       chosen[i] = from >= -upper_cut ? typical : flat;
   }
-  // White noise scatters by sqrt(2 * 3.46 / n) of its share: 3.46 is the sum of squares of the
-  // weights in `slow_share` but the first.
+  // The slow share of white noise scatters by sqrt(2 * 3.46 / n), relatively; 3.46 is the sum of
+  // the squared weights in `slow_share` except the first.
   const double expected =
       crowd.centre * std::sqrt(2 * 3.46 / static_cast<double>(samples.front().pixels));
   clear = crowd.deviation < 2.5 * expected;
@@ -85,7 +86,7 @@ Mask unsaturated(const PlacedImage& image, const Saturation& saturated) {
   return good;
 }
 
-/// Number of pixels that are 1.
+/// The number of pixels that the mask includes.
 std::int64_t count(const Mask& mask, const PixelRectangle& r) {
   std::int64_t n = 0;
   for (int y = r.y0; y < r.y1; ++y)
@@ -114,7 +115,7 @@ struct Chosen {
   std::vector<char> used;  // Flatness
 };
 
-/// The largest blocks of which enough are flat.
+/// Chooses the largest size of blocks at which enough blocks are flat.
 Chosen find_flat(const PlacedImage& image, const Mask& good, const SemNoiseOptions& o,
                  SemNoiseEstimate& e) {
   const std::vector<int> sides =
@@ -174,21 +175,21 @@ Chosen given_regions(const PlacedImage& image, const Mask& good, const SemNoiseO
   return c;
 }
 
-/// Mean of the fourth powers over the squared variance, less 3, which is what it is for normal
-/// noise.
+/// The excess kurtosis: the mean of the fourth powers over the squared variance, minus 3, the value
+/// for normal noise.
 double kurtosis_of(const Chosen& c) {
   double sum = 0, weight = 0;
   for (std::size_t i = 0; i < c.used.size(); ++i) {
     const FlatSample& s = c.flat.samples[i];
     if (!c.used[i]) continue;
     const double n = static_cast<double>(s.pixels);
-    // Normal residuals over their own variance have 3 (n - 1) / (n + 1).
+    // For normal residuals relative to their own variance, the mean is 3 (n - 1) / (n + 1).
     sum += n * (n * s.fourths / (s.squares * s.squares) * (n + 1) / (n - 1) - 3), weight += n;
   }
   return weight > 0 ? sum / weight : 0;
 }
 
-/// The line, given the variance of each place as far as it is known, for the correlation.
+/// Fits the line, given the best known variance of each region, which the correlation needs.
 void fit(const Chosen& c, const std::vector<double>& variances, const SemNoiseOptions& options,
          SemNoiseEstimate& e) {
   const LagSums correlation = pooled_correlation(c.flat, variances);
@@ -219,8 +220,8 @@ SemNoiseEstimate estimate_sem_noise(const PlacedImage& image, const SemNoiseOpti
   const Mask good = unsaturated(image, saturated);
   const Chosen c = options.regions.empty() ? find_flat(image, good, options, e)
                                            : given_regions(image, good, options);
-  // A place over its own variance makes the correlation a little too small: the second time over
-  // the line's.
+  // Dividing a region by its own variance makes the correlation slightly too small, so the second
+  // fit divides by the line's variance.
   std::vector<double> variances(c.used.size(), 0);
   for (std::size_t i = 0; i < variances.size(); ++i)
     if (c.used[i] == typical)

@@ -12,8 +12,8 @@
 namespace surf {
 namespace {
 
-/// The standard normal number of x, its density, and the derivatives of its distribution function
-/// by median, logarithm of the scale, and logarithm of the shape.
+/// The standard normal number that corresponds to x, its density, and the derivatives of its
+/// distribution function by the median, the logarithm of the scale, and the logarithm of the shape.
 struct Edge {
   double z = 0;
   double by[3] = {0, 0, 0};
@@ -35,7 +35,7 @@ Edge edge_at(const double* parameters, double x) {
   return e;
 }
 
-/// Mean of -log P, which is of the size of 1.
+/// The mean of -log P, which is of order 1.
 class Likelihood final : public solvers::SmoothFunction {
  public:
   Likelihood(const CountHistogram& counts, double trials) : counts_(counts), trials_(trials) {}
@@ -49,7 +49,8 @@ class Likelihood final : public solvers::SmoothFunction {
     for (std::size_t k = 0; k < counts_.size(); ++k) {
       if (counts_[k] == 0) continue;
       const double probability = d.probability(static_cast<std::int64_t>(k));
-      if (!(probability > 0)) return false;  // outside: the line search comes back
+      if (!(probability > 0))
+        return false;  // outside the support: the line search shortens its step
       const double share = static_cast<double>(counts_[k]) / trials_, x = static_cast<double>(k);
       *cost -= share * std::log(probability);
       if (!gradient) continue;
@@ -64,7 +65,7 @@ class Likelihood final : public solvers::SmoothFunction {
   double trials_;
 };
 
-/// The shape whose skewness, shape (3 + shape^2 ...) for small ones, is the one wanted.
+/// The shape with the given skewness, which is shape (3 + shape^2 ...) for small shapes.
 double shape_of(double skewness) {
   double low = 1e-3, high = 2;
   for (int i = 0; i < 60; ++i) {
@@ -87,7 +88,7 @@ LogNormalCounts fit_log_normal(const CountHistogram& counts) {
   how.function_tolerance = 0;
   how.parameter_tolerance = 0;
   how.gradient_tolerance = 1e-9;
-  // From several shapes: with few counts there may be more than one optimum.
+  // Starts from several shapes, because with few counts there may be several optima.
   double best_cost = std::numeric_limits<double>::infinity();
   LogNormalCounts best{m.mean, std::sqrt(m.variance), 0};
   for (const double shape : {shape_of(m.skewness), 0.05, 0.3, 1.0}) {

@@ -45,7 +45,7 @@ std::vector<Residual> residuals_by_mean(const Grid<double>& real, const Grid<dou
   return out;
 }
 
-/// Of the whitened residuals; what is within four standard errors of 0 is 0.
+/// The correlation of the whitened residuals. Values within four standard errors of 0 are set to 0.
 LagSums correlation_of(const Grid<double>& white, const Mask& counts) {
   LagSums correlation{1};
   double squares = 0, n = 0;
@@ -92,8 +92,8 @@ SemNoiseEstimate fit_sem_noise(const Grid<double>& real, const Grid<double>& mea
     throw InvalidInput("SEM noise", "the model is the image: there is no noise",
                        "Give a real image");
 
-  // Each squared residual is a variance with one degree of freedom. Its fit is that of greatest
-  // likelihood.
+  // Each squared residual is a variance with one degree of freedom, so the fit of their line
+  // maximises the likelihood.
   const double least = std::max(options.least_share * mean_square, e.quantum * e.quantum / 12);
   std::vector<VariancePoint> pixels;
   for (const Residual& r : residuals) pixels.push_back({r.mean, r.value * r.value, 1});

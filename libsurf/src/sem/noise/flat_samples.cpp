@@ -44,7 +44,7 @@ void each_pair(int width, int height, const std::vector<int>& index, const Lag& 
     }
 }
 
-/// Monomials made orthonormal over the pixels, twice, which is enough.
+/// Orthonormalises monomials over the pixels, in two passes, which are enough.
 void orthonormalise(std::vector<std::vector<double>>& columns) {
   std::vector<std::vector<double>> kept;
   for (std::vector<double>& column : columns) {
@@ -55,7 +55,7 @@ void orthonormalise(std::vector<std::vector<double>>& columns) {
         for (std::size_t i = 0; i < column.size(); ++i) column[i] -= share * k[i];
       }
     const double length = std::sqrt(dot(column, column));
-    if (!(length > 1e-9 * before)) continue;  // as of a rectangle one pixel wide
+    if (!(length > 1e-9 * before)) continue;  // for example, for a rectangle one pixel wide
     for (double& v : column) v /= length;
     kept.push_back(std::move(column));
   }
@@ -88,9 +88,10 @@ const FlatSamples::Basis& FlatSamples::basis_of(const PixelRectangle& r) {
   return basis_;
 }
 
-// With S_k the symmetric matrix of pairs k apart (half of it for k = 0: the identity) and M = 1 - Q
-// Q' what takes the polynomial off, noise of variance 1 and correlation r_k has E[e' S_h e] = sum
-// over k of r_k tr(S_h M S_k M), and tr = tr(S_h S_k) - 2 tr(Q' S_h S_k Q) + tr(Q' S_h Q Q' S_k Q).
+// Let S_k be the symmetric matrix of pairs k apart (half of it for k = 0: the identity), and M = 1
+// - Q Q' the projection that removes the polynomial. Noise of variance 1 and correlation r_k has
+// E[e' S_h e] = sum over k of r_k tr(S_h M S_k M), with tr = tr(S_h S_k) - 2 tr(Q' S_h S_k Q) +
+// tr(Q' S_h Q Q' S_k Q).
 LagResponse FlatSamples::response_of(const Basis& b) {
   const std::size_t n = b.columns.empty() ? 0 : b.columns.front().size(), m = b.columns.size();
   std::vector<std::vector<std::vector<double>>> shifted(lag_count);  // S_k q
@@ -144,7 +145,7 @@ bool FlatSamples::add(const PixelRectangle& r) {
     s.squares += v * v, s.fourths += v * v * v * v;
     largest = std::max(largest, std::fabs(v));
   }
-  // Rounding of a constant is no noise.
+  // Rounding errors of a constant are no noise.
   if (largest <= 1e-13 * std::fabs(s.mean)) s.squares = s.fourths = 0;
   s.products[0] = s.squares, s.pairs[0] = static_cast<double>(s.pixels);
   for (std::size_t k = 1; k < lag_count; ++k)
@@ -172,7 +173,7 @@ LagSums pooled_correlation(const FlatSamples& flat, const std::vector<double>& v
   }
   LagSums correlation{1};
   if (!(pairs[0] > 0)) return correlation;
-  // Of the lags, those no place has pairs for stay 0.
+  // Lags without any pair of pixels stay 0.
   for (std::size_t h = 1; h < lag_count; ++h)
     if (!(pairs[h] > 0)) response(static_cast<Eigen::Index>(h), static_cast<Eigen::Index>(h)) = 1;
   const Eigen::FullPivLU<decltype(response)> solver(response);
@@ -189,7 +190,7 @@ LagSums pooled_correlation(const FlatSamples& flat, const std::vector<double>& v
 double variance_of(const FlatSample& s, const LagResponse& response, const LagSums& correlation) {
   double expected = 0;
   for (std::size_t k = 0; k < lag_count; ++k) expected += response[k] * correlation[k];
-  // Of noise that a polynomial takes almost all of, nothing is known.
+  // The variance is unknown if the polynomial removes almost all of the noise.
   return s.squares / std::max(expected, 0.05 * static_cast<double>(s.pixels));
 }
 

@@ -11,7 +11,8 @@
 
 namespace surf {
 
-/// Distances up to two pixels, each with its opposite: (0, 0) first, then 12 others.
+/// A displacement of up to two pixels, which stands for its opposite, too: (0, 0) first, then 12
+/// others.
 struct Lag {
   int dx, dy;
 };
@@ -20,29 +21,30 @@ extern const std::array<Lag, lag_count> lags;
 
 using LagSums = std::array<double, lag_count>;
 
-/// What a polynomial leaves of one place of an image.
+/// The residuals of one region of an image from a polynomial.
 struct FlatSample {
   PixelRectangle region;
   std::int64_t pixels = 0;
   double mean = 0;
   double squares = 0, fourths = 0;  ///< sums of powers of the residuals
-  LagSums products{};               ///< of residuals so far apart, summed; the first is `squares`
-  LagSums pairs{};                  ///< number of them
+  LagSums products{};               ///< [lag]: sum of products of residuals; the first is `squares`
+  LagSums pairs{};                  ///< [lag]: number of pairs
   int geometry = 0;                 ///< index of its `LagResponse`
 };
 
-/// What noise of each correlation adds to the expected `products` of a place, per unit of variance:
-/// the polynomial takes some of the noise with it. Row-major, products by correlations.
+/// The contribution of noise at each lag of correlation to the expected `products` of a region, per
+/// unit of variance. The polynomial removes a part of the noise. Row-major, products by
+/// correlations.
 using LagResponse = std::array<double, lag_count * lag_count>;
 
-/// Collects samples; places without holes of the same size share their response.
+/// Collects samples; regions without holes and of the same size share their response.
 class FlatSamples {
  public:
   /// `degree` 0 to 2. Refers to both grids, which have the same size (or `valid` is empty).
   FlatSamples(const Grid<double>& values, const Mask& valid, int degree)
       : values_(values), valid_(valid), degree_(degree) {}
 
-  /// Adds a place, unless it has fewer than four pixels for each coefficient.
+  /// Adds a region, unless it has fewer than four pixels per coefficient.
   bool add(const PixelRectangle& region);
 
   std::vector<FlatSample> samples;
@@ -53,7 +55,7 @@ class FlatSamples {
  private:
   struct Basis {
     int width = 0, height = 0;
-    std::vector<int> index;                    ///< of a pixel of the rectangle; -1: not valid
+    std::vector<int> index;  ///< index of each pixel of the rectangle; -1: not valid
     std::vector<std::vector<double>> columns;  ///< orthonormal, over the valid pixels
     int geometry = 0;
   };
@@ -66,20 +68,20 @@ class FlatSamples {
   Basis basis_;
 };
 
-/// The noise's correlation at each lag, 1 first, from residuals of many places, each over its
-/// `variances` (one per sample; 0: it does not count). What is within four standard errors of 0 is
-/// 0.
+/// The noise's correlation at each lag, 1 first, from the residuals of many regions. Each is
+/// divided by its variance in `variances` (one per sample; 0: it does not count). Correlations
+/// within four standard errors of 0 are set to 0.
 LagSums pooled_correlation(const FlatSamples& flat, const std::vector<double>& variances);
 
-/// Variance of the noise in a place, free of what the polynomial took.
+/// The variance of the noise in a region, corrected for the part that the polynomial removed.
 double variance_of(const FlatSample& sample, const LagResponse& response,
                    const LagSums& correlation);
 
-/// Share of the residuals' power in means of 3 x 3 pixels, times 9: 1 for white noise, 9 for slow
-/// structure.
+/// The share of the residuals' power in means of 3 x 3 pixels, times 9: 1 for white noise, 9 for
+/// slow structure.
 double slow_share(const FlatSample& sample);
 
-/// Sum over all distances, those on the other side too.
+/// The sum over all displacements, including the opposite ones.
 double sum_of(const LagSums& correlation);
 double sum_of_squares(const LagSums& correlation);
 

@@ -30,7 +30,7 @@ std::vector<Level> levels_of(const Grid<double>& values, const Mask& valid) {
   return levels;
 }
 
-/// The step between levels, if they all lie on one ladder whose steps hold several pixels each.
+/// The step between levels, if all of them are multiples of one step and have several pixels each.
 double quantum_of(const std::vector<Level>& levels) {
   if (levels.size() < 2) return 0;
   double step = std::numeric_limits<double>::infinity();
@@ -41,7 +41,7 @@ double quantum_of(const std::vector<Level>& levels) {
   }
   if (pixels < 2 * static_cast<std::int64_t>(levels.size())) return 0;
   const double range = levels.back().value - levels.front().value;
-  step = range / std::round(range / step);  // of levels that were rounded themselves
+  step = range / std::round(range / step);  // for levels that were rounded themselves
   for (const Level& level : levels) {
     const double steps = (level.value - levels.front().value) / step;
     if (std::fabs(steps - std::round(steps)) > 1e-3) return 0;

@@ -9,15 +9,15 @@
 
 namespace surf {
 
-/// How an image's values were stored.
+/// The quantisation of an image's values.
 struct GreyLevels {
-  double quantum = 0;  ///< all values are whole multiples of it apart; 0: of nothing coarse
+  double quantum = 0;                  ///< step between values; 0: not quantised, or finely
   std::optional<double> black, white;  ///< levels at which more pixels pile up than beside them
 };
 
-/// Of the pixels that are not 0 in `valid` (same size, or empty), which are finite. A level is a
-/// pile if it is the least or largest of 16 or more, and holds more than three times the mean of
-/// the five levels next to it and ten pixels.
+/// Analyses the pixels that are not 0 in `valid` (same size, or empty); they must be finite. The
+/// least or largest of 16 or more levels is a pile if it holds more than ten pixels, and more than
+/// three times the mean of the five levels next to it.
 GreyLevels grey_levels(const Grid<double>& values, const Mask& valid);
 
 }  // namespace surf

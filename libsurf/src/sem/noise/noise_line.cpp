@@ -15,9 +15,10 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int off_line_block = 4;
-constexpr double least_spread =
-    10;  // variance of the means over that of their noise: a slope 10 % too small
-constexpr double least_correlation_sum = 1.0 / 25;  // 25 pixels enter it
+// Least ratio of the variance of the means to that of their noise; at the limit the slope is 10 %
+// too small.
+constexpr double least_spread = 10;
+constexpr double least_correlation_sum = 1.0 / 25;  // it sums over 25 pixels
 
 double median_variance(const std::vector<VariancePoint>& points) {
   std::vector<double> v;
@@ -38,8 +39,8 @@ Range means_of(const std::vector<VariancePoint>& points, const std::vector<char>
   return r;
 }
 
-/// Whether means differ by more than their noise: else a slope would be that of mean on variance by
-/// chance.
+/// Whether the means differ by more than their noise. Otherwise the slope could be a chance
+/// correlation of mean and variance.
 bool spread_is_real(const SemNoiseEstimate& e, const std::vector<char>& used) {
   double n = 0, mean = 0, squares = 0, error = 0;
   for (std::size_t i = 0; i < used.size(); ++i) {
@@ -133,8 +134,8 @@ void set_line(const std::vector<VariancePoint>& points, double least_share, doub
   VarianceLine line = fit_variance_line(points, options);
   const Range means = means_of(points, line.used);
   const double middle = 0.5 * (means.least + means.largest);
-  // Half the range of means times the slope's error: how much less is known of an end than of the
-  // middle.
+  // Half the range of means times the slope's error: the additional uncertainty at an end of the
+  // range compared to the middle.
   const double unknown = std::sqrt(line.covariance[0]) * 0.5 * (means.largest - means.least);
   e.slope_known = line.covariance[0] > 0 && spread_is_real(e, line.used) &&
                   unknown <= 0.5 * std::fabs(line.slope * middle + line.intercept);

@@ -10,23 +10,24 @@
 
 namespace surf {
 
-/// Checks what SemNoiseOptions says of numbers; UsageError.
+/// Checks the numbers in SemNoiseOptions; throws UsageError.
 void check_options(const SemNoiseOptions& options);
 
-/// Fits the line to `points` and fills in what `estimate` says of it: noise, covariance,
-/// slope_known, the test and the range of means. The estimate's own points, as many, are marked.
+/// Fits the line to `points` and sets the corresponding parts of `estimate`: noise, covariance,
+/// slope_known, the test and the range of means. Marks the estimate's own points, which correspond
+/// to `points`.
 void set_line(const std::vector<VariancePoint>& points, double least_share, double cut,
               SemNoiseEstimate& estimate);
 
-/// The test of a line that is there already.
+/// Tests a given line.
 void test_line(const std::vector<VariancePoint>& points, const VarianceLine& line,
                double parameters, SemNoiseEstimate& estimate);
 
-/// correlation_x, correlation_y and the sums.
+/// Sets correlation_x, correlation_y and the sums of correlations.
 void set_correlation(const LagSums& correlation, SemNoiseEstimate& estimate);
 
-/// Levels that count as saturated, told or found, and how many pixels are. Fills in quantum, black
-/// and white.
+/// The levels that count as saturated, from the options or from the image. `find_saturation` also
+/// counts the saturated pixels and sets quantum, black and white.
 struct Saturation {
   double black, white;
   bool operator()(double value) const { return value <= black || value >= white; }
@@ -34,10 +35,10 @@ struct Saturation {
 Saturation find_saturation(const Grid<double>& values, const Mask& valid,
                            const SemNoiseOptions& options, SemNoiseEstimate& estimate);
 
-/// The off-line share, from means of 4 x 4 pixels of `values`.
+/// Sets off_line_share from means of 4 x 4 pixels of `values`.
 void set_off_line_share(const Grid<double>& values, const Mask& valid, SemNoiseEstimate& estimate);
 
-/// What people should know of an estimate: `estimate.warnings` gets more.
+/// Adds warnings about an estimate to `estimate.warnings`.
 void add_warnings(SemNoiseEstimate& estimate);
 
 }  // namespace surf

@@ -15,11 +15,11 @@ namespace {
 
 constexpr std::size_t most_bins = 30, least_in_bin = 100;
 constexpr double cut = 3.5, least_share = 0.01;
-constexpr double of_median =
-    1.4826;  // standard deviation over the median of absolute values, of normal numbers
-// What a squared median is worth: degrees of freedom per value, as of normal numbers (0.37), and
-// the share that is left of it because neighbouring second differences are correlated (6^2 / (6^2 +
-// 2 (4^2 + 1)), squared correlations).
+// Standard deviation over the median of absolute values, for normal numbers.
+constexpr double of_median = 1.4826;
+// Degrees of freedom of a squared median, per value: 0.37 for normal numbers, times the share that
+// remains because neighbouring second differences are correlated (6^2 / (6^2 + 2 (4^2 + 1)),
+// squared correlations).
 constexpr double freedom = 0.37 * 36 / (36 + 2 * 17);
 
 struct Difference {

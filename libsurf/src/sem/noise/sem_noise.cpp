@@ -20,8 +20,8 @@ void check_sizes(const Grid<double>& real, const Grid<double>& mean, const Mask&
 
 }  // namespace
 
-// With the line v = slope mean + intercept and f the least variance: f for v <= 0, v for v >= 2 f,
-// and between f + v^2 / (4 f), which meets both with their derivatives.
+// Let v = slope mean + intercept be the line and f the least variance. The variance is f for v
+// <= 0, v for v >= 2 f, and f + v^2 / (4 f) in between; the derivatives match at both ends.
 double SemNoise::variance(double mean) const {
   const double v = slope * mean + intercept;
   if (v >= 2 * least_variance) return v;

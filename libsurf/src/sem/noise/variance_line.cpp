@@ -15,8 +15,8 @@ constexpr int most_steps = 200;
 constexpr double first_cut = 6;
 
 struct Sums {
-  double weight = 0, mean = 0, response = 0;  // of means and responses: weighted averages
-  double xx = 0, xy = 0;                      // about them
+  double weight = 0, mean = 0, response = 0;  // weighted averages of means and responses
+  double xx = 0, xy = 0;                      // relative to the averages
 };
 
 struct Working {
@@ -47,8 +47,8 @@ SemNoise noise_of(const VarianceLine& line, double floor) {
   return {line.slope, line.intercept, floor};
 }
 
-/// One step of Fisher scoring. Where the variance has left the line, only what it still follows of
-/// it counts.
+/// Makes one step of Fisher scoring. Where the variance departs from the line, a point counts only
+/// as far as the variance still follows the line.
 void step(const std::vector<VariancePoint>& points, const VarianceLineOptions& o,
           VarianceLine& line) {
   const SemNoise old = noise_of(line, o.floor);
@@ -72,7 +72,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// The line through medians of points of neighbouring means: structure does not pull it.
+/// Starts from the line through medians of groups of points with similar means, which structure
+/// does not bias.
 void start_robustly(const std::vector<VariancePoint>& points, const VarianceLineOptions& o,
                     VarianceLine& line) {
   std::vector<std::size_t> order(points.size());
@@ -88,8 +89,8 @@ void start_robustly(const std::vector<VariancePoint>& points, const VarianceLine
     for (std::size_t i = g * n / groups; i < (g + 1) * n / groups; ++i) {
       const VariancePoint& p = points[order[i]];
       means.push_back(p.mean), freedoms.push_back(p.freedom);
-      variances.push_back(p.variance / std::pow(std::max(1 - 2 / (9 * p.freedom), 0.1),
-                                                3));  // median of chi-squared
+      // The divisor is the median of chi-squared over its mean.
+      variances.push_back(p.variance / std::pow(std::max(1 - 2 / (9 * p.freedom), 0.1), 3));
     }
     middles.push_back({median(means), median(variances), median(freedoms)});
   }
@@ -161,7 +162,7 @@ Curvature fit_curvature(const std::vector<VariancePoint>& points, const Variance
   each([&](const Working& w, double x) {
     w1 += w.weight, w2 += w.weight * x * x, w3 += w.weight * x * x * x;
   });
-  // The square less what a line says of it.
+  // The square, orthogonal to constants and lines.
   const auto square = [&](double x) { return x * x - w2 / w1 - w3 / w2 * x; };
   double xy = 0, least = 0, largest = 0;
   each([&](const Working& w, double x) {

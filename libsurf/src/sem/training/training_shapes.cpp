@@ -10,7 +10,7 @@
 namespace surf {
 namespace {
 
-// Numbers of streams that nothing else uses with the same seed.
+// Stream number that nothing else uses with the same seed.
 constexpr std::uint64_t stream = 0x7e5a;
 
 struct Block {
@@ -122,7 +122,7 @@ HeightField TrainingShapes::outline() {
                 t = std::min(y + 1, last);
       const double slope =
           std::hypot((z(r, y) - z(l, y)) / (r - l), (z(x, t) - z(x, b)) / (t - b)) / pixel_nm_;
-      // Where the field is level there is no outline near.
+      // Limits the distance where the random field is level.
       field.z_nm(x, y) = (z(x, y) - level) / std::hypot(slope, 0.2 / length);
     }
   return field;

@@ -21,10 +21,10 @@ HeightField sum(HeightField a, const HeightField& b, double factor = 1) {
   return a;
 }
 
-/// What a kind of surface is made with.
+/// Scale factors for a kind of surface.
 struct Scale {
-  double height;  ///< what heights are multiplied by
-  double pixel;   ///< the pixel over 3 nm, of which roughness is made up
+  double height;  ///< factor of heights
+  double pixel;   ///< pixel size over 3 nm, for the scale of roughness
 };
 
 struct Kind {
