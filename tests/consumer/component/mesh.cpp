@@ -5,6 +5,6 @@
 
 int main() {
   const surf::TriangleMesh sphere = surf::make_sphere({0, 0, 0}, 10);
-  if (sphere.vertices.empty()) surf::simplify_mesh(sphere, {});
+  if (sphere.vertices_nm.empty()) surf::simplify_mesh(sphere, {});
   return surf::check_mesh(sphere).closed_and_oriented ? 0 : 1;
 }
