@@ -116,7 +116,7 @@ TEST(ThreeMfOutside, WeReadTheirs) {
   CHECK(lib3mf_writer_getstreamsize(writer, &size));
   std::string content(size, '\0');
   CHECK(lib3mf_writer_writetobuffer(writer, reinterpret_cast<BYTE*>(content.data()), size));
-  ASSERT_TRUE(is_3mf(content));
+  ASSERT_TRUE(io::three_mf_format.is(content));
   const SurfaceScene scene = test::parsed(io::three_mf_format, "f.3mf", content, {});
   ASSERT_EQ(scene.surfaces.size(), 1u);
   EXPECT_EQ(scene.surfaces[0].name, "F");
