@@ -54,7 +54,7 @@ struct Misfit {
 
 }  // namespace
 
-Correlation::Correlation(const BlurLevel& level, const Corners& corners)
+Correlation::Correlation(const BlurLevel& level, const ThreePointMap& corners)
     : level_(level), overlap_(overlap_of(level, corners)) {
   a_.reserve(overlap_.size());
   for (const std::size_t i : overlap_) a_.push_back(level.samples[i].value);
@@ -63,7 +63,7 @@ Correlation::Correlation(const BlurLevel& level, const Corners& corners)
 
 double Correlation::evaluate(const double* at, double* residuals, double* jacobian) const {
   const std::size_t n = size();
-  const Corners corners{at[0], at[1], at[2], at[3], at[4], at[5]};
+  const ThreePointMap corners{at[0], at[1], at[2], at[3], at[4], at[5]};
   std::vector<double> b(n), dx(jacobian ? n : 0), dy(jacobian ? n : 0);
   for (std::size_t k = 0; k < n; ++k) {
     const Point2 p = place(corners, level_.samples[overlap_[k]].shares);
@@ -104,7 +104,7 @@ double Correlation::evaluate(const double* at, double* residuals, double* jacobi
   return r;
 }
 
-Corners Correlation::gradient(const Corners& corners) const {
+ThreePointMap Correlation::gradient(const ThreePointMap& corners) const {
   const std::size_t n = size();
   std::vector<SmoothImage::Value> v(n);
   double mean = 0;
@@ -120,7 +120,7 @@ Corners Correlation::gradient(const Corners& corners) const {
     ab += a_[k] * v[k].value;
     bb += v[k].value * v[k].value;
   }
-  Corners sum{};
+  ThreePointMap sum{};
   if (!(ab > 0)) return sum;
   const double slope = ab / bb;
   for (std::size_t k = 0; k < n; ++k) {
@@ -135,13 +135,13 @@ Corners Correlation::gradient(const Corners& corners) const {
   return sum;
 }
 
-Slopes slopes_at(const Correlation& correlation, const Corners& corners) {
+Slopes slopes_at(const Correlation& correlation, const ThreePointMap& corners) {
   Matrix6 h;
   for (std::size_t p = 0; p < 6; ++p) {
-    Corners above = corners, below = corners;
+    ThreePointMap above = corners, below = corners;
     above[p] += difference_px;
     below[p] -= difference_px;
-    const Corners up = correlation.gradient(above), down = correlation.gradient(below);
+    const ThreePointMap up = correlation.gradient(above), down = correlation.gradient(below);
     for (std::size_t i = 0; i < 6; ++i)
       h(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(p)) =
           (up[i] - down[i]) / (2 * difference_px);
@@ -159,7 +159,7 @@ namespace {
 class Newton {
  public:
   /// Makes a step and returns its length in pixels.
-  double step(const BlurLevel& level, Corners& corners, int& evaluations) {
+  double step(const BlurLevel& level, ThreePointMap& corners, int& evaluations) {
     const Correlation correlation(level, corners);
     if (correlation.size() < fewest_samples) return 0;
     if (!fresh_enough_) {
@@ -167,7 +167,7 @@ class Newton {
       eigen_.compute(Matrix6(Eigen::Map<const Matrix6>(slopes.second.data())));
       evaluations += 12;
     }
-    const Corners gradient = correlation.gradient(corners);
+    const ThreePointMap gradient = correlation.gradient(corners);
     const Vector6 pull =
         eigen_.eigenvectors().transpose() * Eigen::Map<const Vector6>(gradient.data());
     const Vector6& stiffness = eigen_.eigenvalues();
@@ -185,7 +185,7 @@ class Newton {
     fresh_enough_ = length < 0.25 * longest_step_px;
     for (int half = 0; half < 6;
          ++half, step *= 0.5, length *= 0.5, ++evaluations, fresh_enough_ = false) {
-      Corners next = corners;
+      ThreePointMap next = corners;
       for (std::size_t i = 0; i < 6; ++i) next[i] += step[static_cast<Eigen::Index>(i)];
       if (correlation.evaluate(next.data(), residual.data(), nullptr) < here) continue;
       corners = next;
@@ -201,7 +201,7 @@ class Newton {
 
 }  // namespace
 
-CorrelationFit fit_correlation(const BlurLevel& level, const Corners& start, int rounds,
+CorrelationFit fit_correlation(const BlurLevel& level, const ThreePointMap& start, int rounds,
                                int iterations, int newton_steps) {
   CorrelationFit fit;
   fit.corners = start;

@@ -16,7 +16,7 @@ namespace surf {
 class Correlation {
  public:
   /// Uses the samples that overlap under `corners`.
-  Correlation(const BlurLevel& level, const Corners& corners);
+  Correlation(const BlurLevel& level, const ThreePointMap& corners);
 
   std::size_t size() const { return overlap_.size(); }
   const std::vector<std::size_t>& overlap() const { return overlap_; }
@@ -29,7 +29,7 @@ class Correlation {
 
   /// The gradient of half the squared norm of the residuals by the corners, faster than with
   /// `evaluate`. Zeros if the intensities do not rise together.
-  Corners gradient(const Corners& corners) const;
+  ThreePointMap gradient(const ThreePointMap& corners) const;
 
  private:
   const BlurLevel& level_;
@@ -41,13 +41,13 @@ class Correlation {
 /// second derivatives are central differences of the exact first ones, so that noise in the AFM's
 /// image is not mistaken for structure.
 struct Slopes {
-  Corners first{};
+  ThreePointMap first{};
   std::array<double, 36> second{};
 };
-Slopes slopes_at(const Correlation& correlation, const Corners& corners);
+Slopes slopes_at(const Correlation& correlation, const ThreePointMap& corners);
 
 struct CorrelationFit {
-  Corners corners{};
+  ThreePointMap corners{};
   Agreement agreement;  ///< at the result, over all samples that overlap there
   int evaluations = 0;
   /// The last step moved every corner by less than 0.002 pixels times the stride of the samples.
@@ -57,7 +57,7 @@ struct CorrelationFit {
 /// Maximises the correlation from an initial map, by Levenberg and Marquardt's method; the overlap
 /// is updated up to `rounds` times. If `newton_steps` is above 0, at least one and at most
 /// `newton_steps` Newton steps follow.
-CorrelationFit fit_correlation(const BlurLevel& level, const Corners& start, int rounds,
+CorrelationFit fit_correlation(const BlurLevel& level, const ThreePointMap& start, int rounds,
                                int iterations, int newton_steps);
 
 }  // namespace surf

@@ -188,7 +188,7 @@ MutualInformation::MutualInformation(const BlurLevel& level,
     afm_bins_.data()[i] = histogram_.bin_b(afm.data()[i]);
 }
 
-double MutualInformation::operator()(const Corners& corners) {
+double MutualInformation::operator()(const ThreePointMap& corners) {
   const bool parzen = options_.estimate == EntropyEstimate::parzen;
   histogram_.clear();
   std::size_t inside = 0;
@@ -215,7 +215,7 @@ double MutualInformation::operator()(const Corners& corners) {
 }
 
 InformationFit fit_information(const BlurLevel& level, const MutualInformationOptions& options,
-                               const Corners& start, const Watch& watch) {
+                               const ThreePointMap& start, const Watch& watch) {
   InformationFit fit;
   fit.corners = start;
   const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> optimiser(
@@ -248,7 +248,8 @@ InformationFit fit_information(const BlurLevel& level, const MutualInformationOp
 
 std::array<double, 36> information_covariance(const BlurLevel& level,
                                               const MutualInformationOptions& options,
-                                              const Corners& corners, double independent_share) {
+                                              const ThreePointMap& corners,
+                                              double independent_share) {
   // The steps are wide compared to the roughness of the histogram.
   constexpr double step = 0.7;
   MutualInformation information(level, options);
@@ -256,7 +257,7 @@ std::array<double, 36> information_covariance(const BlurLevel& level,
   const double n = independent_share * static_cast<double>(overlap_of(level, corners).size());
   std::array<double, 36> negative{};
   const auto at = [&](std::size_t i, double di, std::size_t j, double dj) {
-    Corners c = corners;
+    ThreePointMap c = corners;
     c[i] += di;
     c[j] += dj;
     return information(c);

@@ -60,7 +60,7 @@ class MutualInformation {
   MutualInformation(const BlurLevel& level, const MutualInformationOptions& options);
 
   /// 0 if fewer than 24 samples overlap. Not thread-safe.
-  double operator()(const Corners& corners);
+  double operator()(const ThreePointMap& corners);
 
  private:
   const BlurLevel& level_;
@@ -71,7 +71,7 @@ class MutualInformation {
 };
 
 struct InformationFit {
-  Corners corners{};
+  ThreePointMap corners{};
   double information = 0;
   int evaluations = 0;
   /// Converged to 0.01 pixels (more for blurs above 5 pixels), and not at the limit of the allowed
@@ -82,12 +82,13 @@ struct InformationFit {
 /// Maximises the mutual information from an initial map, by Powell's BOBYQA (NLopt). BOBYQA needs
 /// no derivatives, and derivatives of histograms are meaningless.
 InformationFit fit_information(const BlurLevel& level, const MutualInformationOptions& options,
-                               const Corners& start, const Watch& watch);
+                               const ThreePointMap& start, const Watch& watch);
 
 /// The covariance of the corners, from the curvature of N times the mutual information, which is
 /// the log-likelihood ratio against independence. N is reduced by `independent_share`.
 std::array<double, 36> information_covariance(const BlurLevel& level,
                                               const MutualInformationOptions& options,
-                                              const Corners& corners, double independent_share);
+                                              const ThreePointMap& corners,
+                                              double independent_share);
 
 }  // namespace surf

@@ -7,7 +7,7 @@
 namespace surf {
 
 BlurLevel::BlurLevel(const PlacedImage& sem_image, const PlacedImage& afm_image,
-                     const CornerFrame& frame, double blur)
+                     const ThreePointFrame& frame, double blur)
     : blur_px(blur), stride(std::max(1, static_cast<int>(std::lround(blur)))),
       sem_step_x(sem_image.pitch_x_nm / frame.pixel_nm()),
       sem_step_y(sem_image.pitch_y_nm / frame.pixel_nm()),
@@ -22,7 +22,7 @@ BlurLevel::BlurLevel(const PlacedImage& sem_image, const PlacedImage& afm_image,
       if (sem.is_valid(x, y)) samples.push_back({frame.shares(x, y), sem.samples()(x, y), x, y});
 }
 
-std::vector<std::size_t> overlap_of(const BlurLevel& level, const Corners& corners) {
+std::vector<std::size_t> overlap_of(const BlurLevel& level, const ThreePointMap& corners) {
   std::vector<std::size_t> inside;
   for (std::size_t i = 0; i < level.samples.size(); ++i) {
     const Point2 p = place(corners, level.samples[i].shares);
@@ -41,7 +41,7 @@ Moments moments_of(const BlurLevel& level, const std::vector<std::size_t>& overl
   return m;
 }
 
-double overlap_share(const BlurLevel& level, const Corners& c, std::size_t overlapping) {
+double overlap_share(const BlurLevel& level, const ThreePointMap& c, std::size_t overlapping) {
   if (level.samples.empty()) return 0;
   const double of_sem =
       static_cast<double>(overlapping) / static_cast<double>(level.samples.size());
@@ -56,7 +56,7 @@ double Agreement::evidence() const {
          std::log1p(-std::min(correlation * correlation, 1 - 1e-12));
 }
 
-Agreement agreement_of(const BlurLevel& level, const Corners& corners) {
+Agreement agreement_of(const BlurLevel& level, const ThreePointMap& corners) {
   const std::vector<std::size_t> inside = overlap_of(level, corners);
   Agreement result{0, inside.size()};
   if (inside.size() < 2) return result;

@@ -3,14 +3,14 @@
 
 #include <vector>
 
-#include "registration/corners.h"
 #include "registration/smooth_image.h"
+#include "registration/three_point_map.h"
 
 namespace surf {
 
 /// Both images at one blur: the SEM's at some of its pixels, the AFM's everywhere.
 struct BlurLevel {
-  BlurLevel(const PlacedImage& sem, const PlacedImage& afm, const CornerFrame& frame,
+  BlurLevel(const PlacedImage& sem, const PlacedImage& afm, const ThreePointFrame& frame,
             double blur_px);
 
   struct Sample {
@@ -27,12 +27,12 @@ struct BlurLevel {
 };
 
 /// The indices of the samples of a level that a map places inside the AFM's image.
-std::vector<std::size_t> overlap_of(const BlurLevel& level, const Corners& corners);
+std::vector<std::size_t> overlap_of(const BlurLevel& level, const ThreePointMap& corners);
 
 Moments moments_of(const BlurLevel& level, const std::vector<std::size_t>& overlap);
 
 /// The share of the smaller image that lies in the other.
-double overlap_share(const BlurLevel& level, const Corners& corners, std::size_t overlapping);
+double overlap_share(const BlurLevel& level, const ThreePointMap& corners, std::size_t overlapping);
 
 /// The correlation in the overlap, and its significance.
 struct Agreement {
@@ -44,6 +44,6 @@ struct Agreement {
   /// beat a good fit of the whole image.
   double evidence() const;
 };
-Agreement agreement_of(const BlurLevel& level, const Corners& corners);
+Agreement agreement_of(const BlurLevel& level, const ThreePointMap& corners);
 
 }  // namespace surf

@@ -86,7 +86,7 @@ class Turned {
   }
 
   /// The map that takes the centre to `x`, `y`.
-  Corners corners(double x, double y) const {
+  ThreePointMap three_points(double x, double y) const {
     const double w = level_.sem.half_width(), h = level_.sem.half_height();
     const auto at = [&](double px, double py) -> Point2 {
       return {x + pose_.xx * px + pose_.xy * py, y + pose_.yx * px + pose_.yy * py};
@@ -132,7 +132,7 @@ PoseSearch search_poses(const BlurLevel& level, double pitch, const Registration
         const auto [width, height] = turned.size();
         for (const ShiftPeak& peak : shifts.peaks(turned.samples(), peaks_of_pose))
           found[p].push_back(
-              {turned.corners(x_of(peak.x + width / 2), y_of(peak.y + height / 2)), peak.evidence});
+              {turned.three_points(x_of(peak.x + width / 2), y_of(peak.y + height / 2)), peak.evidence});
       },
       watch);
 

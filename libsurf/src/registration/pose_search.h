@@ -10,7 +10,7 @@ namespace surf {
 
 struct PoseSearch {
   struct Candidate {
-    Corners corners{};
+    ThreePointMap corners{};
     double evidence = 0;
   };
   std::vector<Candidate> candidates;  ///< best first, all of them different

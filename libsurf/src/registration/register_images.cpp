@@ -8,10 +8,10 @@
 #include <map>
 #include <memory>
 
+#include "registration/candidate.h"
 #include "registration/mutual_information.h"
 #include "registration/pose_search.h"
 #include "registration/repeats.h"
-#include "registration/trial.h"
 #include "registration/uncertainty.h"
 #include "registration/verdict.h"
 #include "surf/core/error.h"
@@ -106,7 +106,7 @@ class Registrar {
       : sem_(sem), afm_(afm), options_(options), frame_(sem, afm) {}
 
   Registration run() {
-    std::vector<Trial> trials = options_.start ? from_start() : from_search();
+    std::vector<MapCandidate> candidates = options_.start ? from_start() : from_search();
     const bool searched = !options_.start;
     std::size_t done = 0;
     const Watch fine = options_.watch.part(searched ? 0.7 : 0, 0.95);
@@ -114,16 +114,16 @@ class Registrar {
     for (const double blur : blurs) {
       const Watch of_blur =
           fine.part(double(done) / double(blurs.size()), double(done + 1) / double(blurs.size()));
-      refine(trials, level(blur), options_.objective, effort_at(blur), options_, of_blur);
+      refine(candidates, level(blur), options_.objective, effort_at(blur), options_, of_blur);
       ++done;
       if (!searched) continue;
-      prune(trials, level(blur), frame_, options_, std::max(rival_apart_px, 0.5 * blur),
+      prune(candidates, level(blur), frame_, options_, std::max(rival_apart_px, 0.5 * blur),
             blur <= sharp_blur_px ? places_sharp : places_fine);
-      hold(trials, blur);
-      if (blur <= probe_blur_px && trials.size() > 1)
-        drop_hopeless(trials, level(blur), trials.front().corners);
+      hold(candidates, blur);
+      if (blur <= probe_blur_px && candidates.size() > 1)
+        drop_hopeless(candidates, level(blur), candidates.front().corners);
     }
-    return conclude(std::move(trials));
+    return conclude(std::move(candidates));
   }
 
  private:
@@ -133,13 +133,13 @@ class Registrar {
     return *made;
   }
 
-  std::vector<Trial> from_start() {
-    Trial trial;
-    trial.corners = frame_.corners(*options_.start);
-    return {trial};
+  std::vector<MapCandidate> from_start() {
+    MapCandidate candidate;
+    candidate.corners = frame_.three_points(*options_.start);
+    return {candidate};
   }
 
-  std::vector<Trial> from_search() {
+  std::vector<MapCandidate> from_search() {
     pitch_ = search_pitch_px(sem_);
     // For arbitrary relations of intensities, the magnitude of the gradient is used instead of the
     // intensity.
@@ -153,45 +153,47 @@ class Registrar {
     const PoseSearch search =
         search_poses(coarse, pitch_, options_, places_searched, options_.watch.part(0, 0.5));
     chance_evidence_ = chance_bound(search.best_of_pose, chance_odds);
-    std::vector<Trial> trials;
+    std::vector<MapCandidate> candidates;
     for (const PoseSearch::Candidate& candidate : search.candidates) {
-      trials.emplace_back();
-      trials.back().corners = candidate.corners;
-      trials.back().score = agreement_of(coarse, candidate.corners).correlation;
+      candidates.emplace_back();
+      candidates.back().corners = candidate.corners;
+      candidates.back().score = agreement_of(coarse, candidate.corners).correlation;
       best_coarse_evidence_ = std::max(best_coarse_evidence_, candidate.evidence);
     }
-    hold(trials, pitch_);
-    refine(trials, coarse, RegistrationObjective::correlation, coarse_effort, options_,
+    hold(candidates, pitch_);
+    refine(candidates, coarse, RegistrationObjective::correlation, coarse_effort, options_,
            options_.watch.part(0.5, 0.65));
-    prune(trials, coarse, frame_, options_, pitch_, places_coarse);
-    hold(trials, pitch_);
-    for (const Trial& trial : trials) {
-      coarse_.push_back(trial);
+    prune(candidates, coarse, frame_, options_, pitch_, places_coarse);
+    hold(candidates, pitch_);
+    for (const MapCandidate& candidate : candidates) {
+      coarse_.push_back(candidate);
       best_coarse_evidence_ =
-          std::max(best_coarse_evidence_, trial.evidence * samples_ratio(trial));
+          std::max(best_coarse_evidence_, candidate.evidence * samples_ratio(candidate));
     }
     const BlurLevel finer = blurred_by(0.5 * pitch_);
-    refine(trials, finer, RegistrationObjective::correlation, coarse_effort, options_,
+    refine(candidates, finer, RegistrationObjective::correlation, coarse_effort, options_,
            options_.watch.part(0.65, 0.7));
-    prune(trials, finer, frame_, options_, 0.5 * pitch_, places_fine);
-    hold(trials, 0.5 * pitch_);
-    for (Trial& trial : trials) trial.steps.clear(), trial.places.clear();
-    return trials;
+    prune(candidates, finer, frame_, options_, 0.5 * pitch_, places_fine);
+    hold(candidates, 0.5 * pitch_);
+    for (MapCandidate& candidate : candidates) candidate.steps.clear(), candidate.places.clear();
+    return candidates;
   }
 
   /// Keeps the best candidates that were last within the limits, in case all of them leave the
   /// limits. Candidates much worse than the kept ones do not replace them.
-  void hold(const std::vector<Trial>& trials, double blur) {
-    if (trials.empty()) return;
-    std::vector<Trial> best = trials;
-    std::stable_sort(best.begin(), best.end(),
-                     [](const Trial& a, const Trial& b) { return a.score > b.score; });
+  void hold(const std::vector<MapCandidate>& candidates, double blur) {
+    if (candidates.empty()) return;
+    std::vector<MapCandidate> best = candidates;
+    std::stable_sort(best.begin(), best.end(), [](const MapCandidate& a, const MapCandidate& b) {
+      return a.score > b.score;
+    });
     best.resize(std::min(places_sharp, best.size()));
     if (!held_.empty() && best.front().score < 0.5 * held_.front().score) return;
     held_ = std::move(best);
     held_blur_ = blur;
     if (blur == pitch_ || !by_correlation()) return;
-    for (const Trial& trial : held_) best_correlation_ = std::max(best_correlation_, trial.score);
+    for (const MapCandidate& candidate : held_)
+      best_correlation_ = std::max(best_correlation_, candidate.score);
   }
 
   /// Whether some map agreed more than chance allows at the coarse blur, or so well at a finer blur
@@ -211,33 +213,34 @@ class Registrar {
 
   bool by_correlation() const { return options_.objective == RegistrationObjective::correlation; }
 
-  double error_of(const Place& trial) {
+  double error_of(const Place& candidate) {
     const BlurLevel& last = level(blur_);
-    if (by_correlation()) return score_error(last, trial.corners);
+    if (by_correlation()) return score_error(last, candidate.corners);
     // 2 N I is noncentral chi-squared, of variance 8 N I.
-    const double n = static_cast<double>(trial.samples) * independent_share(last, trial.corners);
-    return n > 0 ? std::sqrt(unit_score_error_of_information * std::max(trial.score, 1 / n) / n)
+    const double n =
+        static_cast<double>(candidate.samples) * independent_share(last, candidate.corners);
+    return n > 0 ? std::sqrt(unit_score_error_of_information * std::max(candidate.score, 1 / n) / n)
                  : 1;
   }
 
-  Uncertainty known(const Place& trial) {
+  Uncertainty known(const Place& candidate) {
     const BlurLevel& last = level(blur_);
     if (by_correlation()) {
-      const EdgeSlip slip = edge_slip(level(std::max(blur_, slip_blur_px)), trial.corners);
-      return uncertainty_of(last, trial.corners, slip);
+      const EdgeSlip slip = edge_slip(level(std::max(blur_, slip_blur_px)), candidate.corners);
+      return uncertainty_of(last, candidate.corners, slip);
     }
-    Uncertainty u =
-        uncertainty_from(information_covariance(last, options_.mutual_information, trial.corners,
-                                                independent_share(last, trial.corners)),
-                         last, trial.corners);
-    u.score = error_of(trial);
+    Uncertainty u = uncertainty_from(
+        information_covariance(last, options_.mutual_information, candidate.corners,
+                               independent_share(last, candidate.corners)),
+        last, candidate.corners);
+    u.score = error_of(candidate);
     return u;
   }
 
   /// Chooses the blur at which the map is known best. Sharp images are least affected by the tip,
   /// blurred ones have less noise. All candidates return to their maps at this blur.
-  Uncertainty choose_blur(std::vector<Trial>& trials) {
-    const Trial best = trials.front();
+  Uncertainty choose_blur(std::vector<MapCandidate>& candidates) {
+    const MapCandidate best = candidates.front();
     std::optional<Uncertainty> least;
     std::size_t chosen = best.steps.size() - 1;
     for (std::size_t i = 0; i < best.steps.size(); ++i) {
@@ -251,15 +254,16 @@ class Registrar {
       chosen = i;
     }
     blur_ = best.steps[chosen].blur_px;
-    for (Trial& trial : trials) static_cast<Place&>(trial) = Place(trial.places[chosen]);
+    for (MapCandidate& candidate : candidates)
+      static_cast<Place&>(candidate) = Place(candidate.places[chosen]);
     return *least;
   }
 
   /// The distance to the nearest place where the scan resembles itself, in SEM pixels; 0: there is
   /// none.
-  double repeat_px(const Trial& best, const Moments& moments) {
+  double repeat_px(const MapCandidate& best, const Moments& moments) {
     double nearest = 0;
-    for (const Corners& c :
+    for (const ThreePointMap& c :
          repeats_of(level(std::max(blur_, slip_blur_px)), best.corners, places_repeated)) {
       const double distance = distance_px(c, best.corners, moments);
       if (nearest == 0 || distance < nearest) nearest = distance;
@@ -269,18 +273,20 @@ class Registrar {
 
   /// Drops candidates that are clearly worse than the best: they are no rivals and need not be
   /// followed.
-  void drop_hopeless(std::vector<Trial>& trials, const BlurLevel& at, const Corners& best) const {
+  void drop_hopeless(std::vector<MapCandidate>& candidates, const BlurLevel& at,
+                     const ThreePointMap& best) const {
     if (!by_correlation()) return;
     const double here = agreement_of(at, best).correlation;
     const double error = score_error(at, best);
-    std::erase_if(
-        trials, [&](const Trial& t) { return here - t.score > 2 * options_.rival_sigmas * error; });
+    std::erase_if(candidates, [&](const MapCandidate& t) {
+      return here - t.score > 2 * options_.rival_sigmas * error;
+    });
   }
 
   /// Maps displaced to either side along the least known motions.
-  static std::vector<Trial> displaced(const Trial& best, const Uncertainty& u) {
-    std::vector<Trial> moved;
-    for (const Corners& motion : u.loosest)
+  static std::vector<MapCandidate> displaced(const MapCandidate& best, const Uncertainty& u) {
+    std::vector<MapCandidate> moved;
+    for (const ThreePointMap& motion : u.loosest)
       for (const double far : probes_px) {
         moved.emplace_back();
         for (std::size_t i = 0; i < 6; ++i)
@@ -292,18 +298,18 @@ class Registrar {
   /// Searches for other optima along these motions, and where the scan resembles itself: patterns
   /// that slide or repeat fit as well there. If an initial map was given, it says which place of a
   /// lattice is meant.
-  std::vector<Trial> probe(const Trial& best, const Uncertainty& u) {
-    std::vector<Trial> probes = displaced(best, u);
+  std::vector<MapCandidate> probe(const MapCandidate& best, const Uncertainty& u) {
+    std::vector<MapCandidate> probes = displaced(best, u);
     if (!options_.start) {
       const BlurLevel& smooth = level(std::max(blur_, slip_blur_px));
-      for (const Corners& corners : repeats_of(smooth, best.corners, places_repeated)) {
+      for (const ThreePointMap& corners : repeats_of(smooth, best.corners, places_repeated)) {
         probes.emplace_back();
         probes.back().corners = corners;
       }
     }
     const auto drop_same = [&](const BlurLevel& at, double apart) {
       const Moments moments = moments_of(at, overlap_of(at, best.corners));
-      std::erase_if(probes, [&](const Trial& t) {
+      std::erase_if(probes, [&](const MapCandidate& t) {
         return distance_px(t.corners, best.corners, moments) < apart;
       });
       prune(probes, at, frame_, options_, rival_apart_px, places_sharp);
@@ -327,7 +333,7 @@ class Registrar {
   Registration slid_off(Evidence evidence) {
     blur_ = held_blur_;
     Registration r;
-    const Trial& best = held_.front();
+    const MapCandidate& best = held_.front();
     const Uncertainty u = known(best);
     r.sem_to_afm = frame_.affine(best.corners);
     r.score = best.score;
@@ -336,13 +342,13 @@ class Registrar {
     r.stderr_px = u.place_px;
     r.overlap = overlap_at(best.corners);
     const Moments moments = moments_of(level(blur_), overlap_of(level(blur_), best.corners));
-    const auto add_rival = [&](const Corners& corners, double score) {
+    const auto add_rival = [&](const ThreePointMap& corners, double score) {
       r.rivals.push_back(
           {frame_.affine(corners), score, distance_px(corners, best.corners, moments)});
     };
     for (std::size_t i = 1; i < held_.size(); ++i) add_rival(held_[i].corners, held_[i].score);
     if (by_correlation())
-      for (const Trial& moved : displaced(best, u)) {
+      for (const MapCandidate& moved : displaced(best, u)) {
         const double score = agreement_of(level(blur_), moved.corners).correlation;
         if (best.score - score <= options_.rival_sigmas * u.score) add_rival(moved.corners, score);
       }
@@ -354,13 +360,13 @@ class Registrar {
     return r;
   }
 
-  double overlap_at(const Corners& corners) {
+  double overlap_at(const ThreePointMap& corners) {
     const BlurLevel& all = level(0);
     return static_cast<double>(overlap_of(all, corners).size()) /
            static_cast<double>(all.samples.size());
   }
 
-  Registration conclude(std::vector<Trial> trials) {
+  Registration conclude(std::vector<MapCandidate> candidates) {
     Registration r;
     Evidence evidence;
     evidence.searched = !options_.start;
@@ -368,15 +374,16 @@ class Registrar {
     evidence.chance_evidence = chance_evidence_;
     evidence.best_coarse_evidence = best_coarse_evidence_;
     evidence.related = are_related();
-    if (trials.empty() && evidence.related && !held_.empty()) return slid_off(evidence);
-    if (trials.empty() || trials.front().samples == 0 || !(trials.front().evidence > 0)) {
+    if (candidates.empty() && evidence.related && !held_.empty()) return slid_off(evidence);
+    if (candidates.empty() || candidates.front().samples == 0 ||
+        !(candidates.front().evidence > 0)) {
       evidence.any_place = false;
       if (options_.start) r.sem_to_afm = *options_.start;
       judge(r, evidence);
       return r;
     }
-    const Uncertainty u = choose_blur(trials);
-    const Trial best = trials.front();
+    const Uncertainty u = choose_blur(candidates);
+    const MapCandidate best = candidates.front();
     r.sem_to_afm = frame_.affine(best.corners);
     r.score = best.score;
     r.blur_px = blur_;
@@ -386,17 +393,18 @@ class Registrar {
     r.overlap = overlap_at(best.corners);
     r.steps = best.steps;
 
-    std::vector<Trial> others(trials.begin() + 1, trials.end());
-    const std::vector<Trial> probes = probe(best, u);
+    std::vector<MapCandidate> others(candidates.begin() + 1, candidates.end());
+    const std::vector<MapCandidate> probes = probe(best, u);
     others.insert(others.end(), probes.begin(), probes.end());
     const Moments moments = moments_of(last, overlap_of(last, best.corners));
-    std::stable_sort(others.begin(), others.end(),
-                     [](const Trial& a, const Trial& b) { return a.score > b.score; });
-    std::vector<Corners> known_rivals;
-    for (const Trial& other : others) {
+    std::stable_sort(
+        others.begin(), others.end(),
+        [](const MapCandidate& a, const MapCandidate& b) { return a.score > b.score; });
+    std::vector<ThreePointMap> known_rivals;
+    for (const MapCandidate& other : others) {
       const double distance = distance_px(other.corners, best.corners, moments);
       if (distance < rival_apart_px) continue;
-      if (std::any_of(known_rivals.begin(), known_rivals.end(), [&](const Corners& c) {
+      if (std::any_of(known_rivals.begin(), known_rivals.end(), [&](const ThreePointMap& c) {
             return distance_px(c, other.corners, moments) < rival_apart_px;
           }))
         continue;
@@ -414,10 +422,10 @@ class Registrar {
     evidence.loosest_px = u.loosest_px;
     evidence.largest_stderr_px = options_.largest_stderr_px;
     // The best map may not be the one that was best at the coarse blur.
-    for (const Trial& trial : coarse_)
-      if (distance_px(trial.corners, best.corners, moments) < 2 * pitch_)
+    for (const MapCandidate& candidate : coarse_)
+      if (distance_px(candidate.corners, best.corners, moments) < 2 * pitch_)
         evidence.coarse_evidence =
-            std::max(evidence.coarse_evidence, trial.evidence * samples_ratio(trial));
+            std::max(evidence.coarse_evidence, candidate.evidence * samples_ratio(candidate));
     if (options_.start) evidence.repeat_px = repeat_px(best, moments);
     judge(r, evidence);
     options_.watch.report(1, 1);
@@ -426,8 +434,8 @@ class Registrar {
 
   /// The ratio of two numbers of samples: the search counts samples of the AFM's frame at its
   /// pitch, a refined map counts samples of the SEM's image.
-  double samples_ratio(const Trial& trial) const {
-    const Corners& c = trial.corners;
+  double samples_ratio(const MapCandidate& candidate) const {
+    const ThreePointMap& c = candidate.corners;
     const double area = std::abs((c[2] - c[0]) * (c[5] - c[1]) - (c[3] - c[1]) * (c[4] - c[0]));
     const double nodes = area / (pitch_ * pitch_);
     const int stride = std::max(1, static_cast<int>(std::lround(pitch_)));
@@ -439,11 +447,11 @@ class Registrar {
   const PlacedImage& sem_;
   const PlacedImage& afm_;
   const RegistrationOptions& options_;
-  CornerFrame frame_;
+  ThreePointFrame frame_;
   std::map<double, std::unique_ptr<BlurLevel>> levels_;
   double pitch_ = 0, chance_evidence_ = 0, best_coarse_evidence_ = 0, best_correlation_ = 0;
   double blur_ = 0;  // blur of the result
-  std::vector<Trial> coarse_, held_;
+  std::vector<MapCandidate> coarse_, held_;
   double held_blur_ = 0;
 };
 

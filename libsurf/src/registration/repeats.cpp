@@ -18,7 +18,7 @@ constexpr double largest_side = 512;
 /// The inverse of `place`: from places of the AFM's image to places of the SEM's image.
 class WayBack {
  public:
-  explicit WayBack(const Corners& c)
+  explicit WayBack(const ThreePointMap& c)
       : c_(c), determinant_((c[2] - c[0]) * (c[5] - c[1]) - (c[3] - c[1]) * (c[4] - c[0])) {}
 
   bool is_seen(const SmoothImage& sem, double x, double y) const {
@@ -29,13 +29,14 @@ class WayBack {
   }
 
  private:
-  Corners c_;
+  ThreePointMap c_;
   double determinant_;
 };
 
 }  // namespace
 
-std::vector<Corners> repeats_of(const BlurLevel& level, const Corners& best, std::size_t wanted) {
+std::vector<ThreePointMap> repeats_of(const BlurLevel& level, const ThreePointMap& best,
+                                      std::size_t wanted) {
   const double w = level.afm.half_width(), h = level.afm.half_height();
   const double pitch =
       std::max({1.0, level.blur_px / blur_per_sample, 2 * std::sqrt(w * h) / largest_side});
@@ -50,7 +51,7 @@ std::vector<Corners> repeats_of(const BlurLevel& level, const Corners& best, std
     return holds(i, j) && back.is_seen(level.sem, x_of(i), y_of(j));
   });
   const ShiftSearch shifts(sampled(columns, rows, value, holds), least_share, {{columns, rows}});
-  std::vector<Corners> repeats;
+  std::vector<ThreePointMap> repeats;
   // The highest peak is the part at its own place.
   for (const ShiftPeak& peak : shifts.peaks(part, wanted + 1)) {
     if (peak.correlation < alike || std::hypot(peak.x, peak.y) < 2 || repeats.size() == wanted)

@@ -12,6 +12,7 @@ namespace surf {
 /// image resembles its own part under the SEM's image, with a correlation of at least 0.5. Returns
 /// the `wanted` displacements with the most evidence, or fewer. Uses only the AFM's intensities, so
 /// the relation to the SEM's intensities does not matter.
-std::vector<Corners> repeats_of(const BlurLevel& level, const Corners& best, std::size_t wanted);
+std::vector<ThreePointMap> repeats_of(const BlurLevel& level, const ThreePointMap& best,
+                                      std::size_t wanted);
 
 }  // namespace surf

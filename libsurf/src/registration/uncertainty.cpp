@@ -191,7 +191,7 @@ Matrix6 displaced(const Blocks& blocks, const Columns& jacobian, double slip_px)
   return slip_px * slip_px * variance;
 }
 
-double own_length(const BlurLevel& level, const Corners& corners) {
+double own_length(const BlurLevel& level, const ThreePointMap& corners) {
   const Correlation correlation(level, corners);
   Eigen::VectorXd residual(static_cast<Eigen::Index>(correlation.size()));
   if (residual.size() == 0) return 0;
@@ -201,11 +201,11 @@ double own_length(const BlurLevel& level, const Corners& corners) {
 
 }  // namespace
 
-double independent_share(const BlurLevel& level, const Corners& corners) {
+double independent_share(const BlurLevel& level, const ThreePointMap& corners) {
   return std::pow(1 + 2 * own_length(level, corners), -2);
 }
 
-double score_error(const BlurLevel& level, const Corners& corners) {
+double score_error(const BlurLevel& level, const ThreePointMap& corners) {
   const Correlation correlation(level, corners);
   Eigen::VectorXd residual(static_cast<Eigen::Index>(correlation.size()));
   if (residual.size() == 0) return 1;
@@ -215,7 +215,7 @@ double score_error(const BlurLevel& level, const Corners& corners) {
   return score_error(blocks, correlation, residual, r);
 }
 
-EdgeSlip edge_slip(const BlurLevel& level, const Corners& corners) {
+EdgeSlip edge_slip(const BlurLevel& level, const ThreePointMap& corners) {
   const Correlation correlation(level, corners);
   const auto n = static_cast<Eigen::Index>(correlation.size());
   if (n == 0) return {};
@@ -241,7 +241,8 @@ EdgeSlip edge_slip(const BlurLevel& level, const Corners& corners) {
   return slip;
 }
 
-Uncertainty uncertainty_of(const BlurLevel& level, const Corners& corners, const EdgeSlip& slip) {
+Uncertainty uncertainty_of(const BlurLevel& level, const ThreePointMap& corners,
+                           const EdgeSlip& slip) {
   Uncertainty u;
   const Correlation correlation(level, corners);
   const auto n = static_cast<Eigen::Index>(correlation.size());
@@ -265,22 +266,22 @@ Uncertainty uncertainty_of(const BlurLevel& level, const Corners& corners, const
 }
 
 Uncertainty uncertainty_from(const std::array<double, 36>& information, const BlurLevel& level,
-                             const Corners& corners) {
+                             const ThreePointMap& corners) {
   Uncertainty u;
   const Matrix6 h = Eigen::Map<const Matrix6>(information.data());
   fill(u, h, h, moments_of(level, overlap_of(level, corners)));
   return u;
 }
 
-std::array<double, 36> affine_covariance(const CornerFrame& frame,
+std::array<double, 36> affine_covariance(const ThreePointFrame& frame,
                                          const std::array<double, 36>& corners) {
   const auto numbers = [](const Affine& m) {
     return std::array<double, 6>{m.xx, m.xy, m.x0, m.yx, m.yy, m.y0};
   };
-  const std::array<double, 6> at_zero = numbers(frame.affine(Corners{}));
+  const std::array<double, 6> at_zero = numbers(frame.affine(ThreePointMap{}));
   Matrix6 by_corner;
   for (std::size_t p = 0; p < 6; ++p) {
-    Corners one{};
+    ThreePointMap one{};
     one[p] = 1;
     const std::array<double, 6> at_one = numbers(frame.affine(one));
     for (std::size_t i = 0; i < 6; ++i)

@@ -18,9 +18,10 @@ struct Uncertainty {
   double place_px = 0;
   /// Standard error along the least known motion, of unit root mean square.
   double loosest_px = 0;
-  std::array<Corners, 2> loosest{};  ///< the two least known motions, of unit root mean square
-  double score = 0;                  ///< standard error of the correlation
-  double block_px = 1;               ///< side of the blocks
+  std::array<ThreePointMap, 2>
+      loosest{};        ///< the two least known motions, of unit root mean square
+  double score = 0;     ///< standard error of the correlation
+  double block_px = 1;  ///< side of the blocks
 };
 
 /// How far edges of one image lie from the edges of the other after alignment. A tip displaces
@@ -33,28 +34,29 @@ struct EdgeSlip {
 
 /// Measures the slip in blocks a few pixels wide. The level must be blurred so much that noise does
 /// not matter.
-EdgeSlip edge_slip(const BlurLevel& level, const Corners& corners);
+EdgeSlip edge_slip(const BlurLevel& level, const ThreePointMap& corners);
 
 /// The uncertainty at an optimum; `corners` come from `fit_correlation`. V is the larger one of two
 /// variances: from the residuals, and from blocks displaced by the slip. If only a few edges
 /// determine a motion, they agree with the map because it was fitted to them; then only the slip of
 /// other edges shows how reliable they are.
-Uncertainty uncertainty_of(const BlurLevel& level, const Corners& corners, const EdgeSlip& slip);
+Uncertainty uncertainty_of(const BlurLevel& level, const ThreePointMap& corners,
+                           const EdgeSlip& slip);
 
 /// The uncertainty of a maximum-likelihood estimate. `information` is the negative second
 /// derivative of the log-likelihood. `score` is left 0.
 Uncertainty uncertainty_from(const std::array<double, 36>& information, const BlurLevel& level,
-                             const Corners& corners);
+                             const ThreePointMap& corners);
 
 /// The number of independent samples per sample, given the correlation of the residuals: 1 for
 /// white residuals, otherwise less.
-double independent_share(const BlurLevel& level, const Corners& corners);
+double independent_share(const BlurLevel& level, const ThreePointMap& corners);
 
 /// The standard error of a correlation.
-double score_error(const BlurLevel& level, const Corners& corners);
+double score_error(const BlurLevel& level, const ThreePointMap& corners);
 
 /// The covariance of xx xy x0 yx yy y0, from that of the corners.
-std::array<double, 36> affine_covariance(const CornerFrame& frame,
+std::array<double, 36> affine_covariance(const ThreePointFrame& frame,
                                          const std::array<double, 36>& corners);
 
 }  // namespace surf

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "registration/corners.h"
+#include "registration/three_point_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,14 +13,14 @@ Point2 middle(const PlacedImage& image) {
 
 }  // namespace
 
-CornerFrame::CornerFrame(const PlacedImage& sem, const PlacedImage& afm)
+ThreePointFrame::ThreePointFrame(const PlacedImage& sem, const PlacedImage& afm)
     : width_(sem.values.width()), height_(sem.values.height()),
       pixel_nm_(std::sqrt(sem.pitch_x_nm * sem.pitch_y_nm)), sem_middle_(middle(sem)),
       afm_middle_(middle(afm)), corners_nm_{sem.place_nm(0, 0), sem.place_nm(width_ - 1, 0),
                                             sem.place_nm(0, height_ - 1)} {}
 
-Corners CornerFrame::corners(const Affine& m) const {
-  Corners c{};
+ThreePointMap ThreePointFrame::three_points(const Affine& m) const {
+  ThreePointMap c{};
   for (std::size_t i = 0; i < 3; ++i) {
     const Point2 p = m(corners_nm_[i]);
     c[2 * i] = (p.x - afm_middle_.x) / pixel_nm_;
@@ -29,7 +29,7 @@ Corners CornerFrame::corners(const Affine& m) const {
   return c;
 }
 
-Affine CornerFrame::affine(const Corners& c) const {
+Affine ThreePointFrame::affine(const ThreePointMap& c) const {
   const double width_nm = corners_nm_[1].x - corners_nm_[0].x,
                height_nm = corners_nm_[2].y - corners_nm_[0].y;
   Affine m;
@@ -42,7 +42,7 @@ Affine CornerFrame::affine(const Corners& c) const {
   return m;
 }
 
-double distance_px(const Corners& a, const Corners& b, const Moments& moments) {
+double distance_px(const ThreePointMap& a, const ThreePointMap& b, const Moments& moments) {
   double sum = 0;
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j)

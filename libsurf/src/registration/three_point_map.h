@@ -12,7 +12,7 @@ namespace surf {
 /// image's lower left, lower right and upper left corners in the AFM's frame, x0 y0 x1 y1 x2 y2.
 /// All six numbers have the same scale. Lengths in the sources of the registration are SEM pixels,
 /// relative to the centre of each image.
-using Corners = std::array<double, 6>;
+using ThreePointMap = std::array<double, 6>;
 
 /// Weights of the three corners at a place of the SEM image; the weights add up to 1.
 using Shares = std::array<double, 3>;
@@ -21,12 +21,12 @@ using Shares = std::array<double, 3>;
 /// root mean square distance.
 using Moments = std::array<std::array<double, 3>, 3>;
 
-class CornerFrame {
+class ThreePointFrame {
  public:
-  CornerFrame(const PlacedImage& sem, const PlacedImage& afm);
+  ThreePointFrame(const PlacedImage& sem, const PlacedImage& afm);
 
-  Corners corners(const Affine& sem_to_afm) const;
-  Affine affine(const Corners& corners) const;
+  ThreePointMap three_points(const Affine& sem_to_afm) const;
+  Affine affine(const ThreePointMap& corners) const;
   Shares shares(double column, double row) const {
     const double s = column / (width_ - 1), t = row / (height_ - 1);
     return {1 - s - t, s, t};
@@ -44,12 +44,12 @@ class CornerFrame {
 };
 
 /// The position to which a place of the SEM image is mapped.
-inline Point2 place(const Corners& c, const Shares& w) {
+inline Point2 place(const ThreePointMap& c, const Shares& w) {
   return {w[0] * c[0] + w[1] * c[2] + w[2] * c[4], w[0] * c[1] + w[1] * c[3] + w[2] * c[5]};
 }
 
 /// The root mean square distance between the positions under two maps, over the places that the
 /// moments were computed from.
-double distance_px(const Corners& a, const Corners& b, const Moments& moments);
+double distance_px(const ThreePointMap& a, const ThreePointMap& b, const Moments& moments);
 
 }  // namespace surf
