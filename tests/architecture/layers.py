@@ -97,7 +97,7 @@ THIRD_PARTY = [
     ("*intrin.h", ["*"]),
     ("dlfcn.h", ["libsurf/src/core/module.cpp"]),
     ("fcntl.h", ["*"]),
-    ("linux/magic.h", ["io/src/files/files.cpp"]),
+    ("linux/magic.h", ["io/src/files/read_file.cpp"]),
     ("malloc.h", ["*"]),
     ("poll.h", ["*"]),
     ("sched.h", ["*"]),

@@ -12,6 +12,7 @@
 #include "compare_truth.h"
 #include "first_calibration.h"
 #include "reconstruction_checkpoint.h"
+#include "reconstruction_state.h"
 #include "sem_frame.h"
 #include "small_job.h"
 #include "surf/afm/morphology.h"

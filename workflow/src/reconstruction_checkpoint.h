@@ -28,8 +28,4 @@ class ReconstructionCheckpoint : public ReconstructionJournal {
   CheckpointFile file_;
 };
 
-/// Serialize a state, and read it back. `unpack` returns nothing for bytes that are not a state.
-std::string pack(const ReconstructionState& state);
-std::optional<ReconstructionState> unpack(const std::string& bytes);
-
 }  // namespace surf::workflow

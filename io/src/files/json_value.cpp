@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "damaged.h"
 #include "surf/core/error.h"
 
 namespace surf::io {
@@ -26,7 +27,7 @@ JsonValue JsonValue::parse(const std::string& file, std::string_view text) {
     root = std::make_shared<const nlohmann::json>(nlohmann::json::parse(text));
   } catch (const nlohmann::json::exception& error) {
     throw FileError(file, fmt::format("its JSON is broken: {}", without_code(error.what())),
-                    "It is cut off or damaged: copy or export it again");
+                    copy_again);
   }
   const JsonValue value(root, root.get(), file);
   if (!root->is_object()) value.fail("its JSON is not an object");

@@ -8,6 +8,7 @@
 #include <array>
 #include <limits>
 
+#include "damaged.h"
 #include "surf/core/error.h"
 #include "text_scanner.h"
 
@@ -161,7 +162,7 @@ ZipReader::ZipReader(std::string file, std::string_view content)
 }
 
 void ZipReader::fail(const std::string& reason) const {
-  throw FileError(file_, reason, "It is cut off or damaged: copy or export it again");
+  throw FileError(file_, reason, copy_again);
 }
 
 std::uint64_t ZipReader::number(std::uint64_t position, int bytes) const {
