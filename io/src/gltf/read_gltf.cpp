@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <type_traits>
 #include <utility>
 
 #include "document.h"
@@ -41,7 +42,8 @@ template <class T>
 T whole(double value, const JsonValue& place) {
   constexpr double most = 0x1p53;  // whole numbers up to here are exact
   const double high = std::min(most, static_cast<double>(std::numeric_limits<T>::max()));
-  if (!(std::abs(value) <= high) || value != std::floor(value)) {
+  const double low = std::is_signed_v<T> ? -high : 0;
+  if (!(value >= low && value <= high) || value != std::floor(value)) {
     place.fail(fmt::format("{} is not a whole number that fits here", value));
   }
   return static_cast<T>(value);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "core/argument.h"
 #include "mesh/flat_field.h"
@@ -47,6 +48,10 @@ HeightField flat_field(const FieldExtent& extent) {
   require_positive(extent.pitch_nm, "pitch");
   const int width = sample_count(extent.width_nm, extent.pitch_nm, "width");
   const int height = sample_count(extent.depth_nm, extent.pitch_nm, "depth");
+  constexpr std::int64_t most = std::int64_t{1} << 28;
+  if (std::int64_t{width} * height > most)
+    throw UsageError("extent", fmt::format("{} x {} samples are more than 2^28", width, height),
+                     "Choose a smaller field or a larger pitch");
   HeightField field;
   field.z_nm = Grid<double>(width, height);
   field.pitch_x_nm = field.pitch_y_nm = extent.pitch_nm;
