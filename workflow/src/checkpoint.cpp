@@ -138,7 +138,7 @@ void Checkpoint::resume() {
   const Identity there = read_identity(file_.read(file_.blocks().front()));
   if (const std::string what = difference(there, identity_); !what.empty())
     throw FileError(
-        name, "is the checkpoint of another job; different: " + what,
+        name, "it is the checkpoint of another job; different: " + what,
         "Choose another name by `job.checkpoint=FILE`, or give up what is in it by `job.restart`");
 
   double work = 0, expected = 0;

@@ -95,12 +95,12 @@ bool CheckpointFile::open(const fs::path& path) {
   file_ = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
   if (file_ < 0) {
     if (errno == ENOENT || errno == ENOTDIR) return false;
-    fail(path, std::string("cannot be opened to go on from: ") + std::strerror(errno));
+    fail(path, std::string("it cannot be opened to go on from: ") + std::strerror(errno));
   }
   struct stat status {};
   if (::fstat(file_, &status) != 0 || !S_ISREG(status.st_mode)) {
     close();
-    fail(path, "is not an ordinary file");
+    fail(path, "it is not an ordinary file");
   }
   lock();
   find_blocks();
@@ -123,7 +123,7 @@ void CheckpointFile::create(const fs::path& path) {
   close();
   path_ = path;
   file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (file_ < 0) fail(path, std::string("cannot be written: ") + std::strerror(errno));
+  if (file_ < 0) fail(path, std::string("it cannot be written: ") + std::strerror(errno));
   lock();
   end_ = 0;
   blocks_.clear();
@@ -143,7 +143,7 @@ void CheckpointFile::find_blocks() {
   end_ = 0;
   std::string head, content;
   const auto fail_reading = [&] {
-    fail(path_, std::string("cannot be read: ") + std::strerror(errno));
+    fail(path_, std::string("it cannot be read: ") + std::strerror(errno));
   };
   struct stat status {};
   if (::fstat(file_, &status) != 0) fail_reading();
@@ -154,7 +154,7 @@ void CheckpointFile::find_blocks() {
     if (offset == 0 && !head.empty() &&
         !tag.starts_with(std::string_view(head).substr(0, tag.size()))) {
       close();
-      throw FileError(path_.string(), "is not a checkpoint of semsurf, and is left alone",
+      throw FileError(path_.string(), "it is not a checkpoint of semsurf, and is left alone",
                       "Choose another name by `job.checkpoint=FILE`");
     }
     const std::uint64_t size = head.size() == head_size ? size_in(head) : 0;
@@ -175,7 +175,7 @@ void CheckpointFile::find_blocks() {
 std::string CheckpointFile::read(const Block& block) const {
   std::string content;
   if (!read_at(file_, block.offset, block.size, content) || content.size() != block.size)
-    fail(path_, "cannot be read any more");
+    fail(path_, "it cannot be read any more");
   return content;
 }
 
@@ -187,14 +187,14 @@ void CheckpointFile::append(const std::string& content) {
   if (!done) {
     const std::string reason = std::strerror(errno);
     [[maybe_unused]] const int ignored = ::ftruncate(file_, static_cast<off_t>(end_));
-    fail(path_, "cannot be written: " + reason);
+    fail(path_, "it cannot be written: " + reason);
   }
   end_ += head_size + content.size();
 }
 
 void CheckpointFile::clear() {
   if (::ftruncate(file_, 0) != 0)
-    fail(path_, std::string("cannot be emptied: ") + std::strerror(errno));
+    fail(path_, std::string("it cannot be emptied: ") + std::strerror(errno));
   end_ = 0;
   blocks_.clear();
   damaged_ = false;

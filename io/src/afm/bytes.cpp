@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "files/damaged.h"
 #include "surf/core/error.h"
 
 namespace surf::io {
@@ -16,15 +17,14 @@ std::string_view Bytes::fixed_text(std::size_t offset, std::size_t size) const {
 }
 
 void Bytes::fail(const std::string& reason, const std::string& remedy) const {
-  throw FileError(file_, reason,
-                  remedy.empty() ? "It is damaged: copy or export it again" : remedy);
+  throw FileError(file_, reason, remedy.empty() ? copy_again : remedy);
 }
 
 void Bytes::fail_short(std::size_t offset, std::size_t size) const {
   throw FileError(fmt::format("{}, byte {}", file_, first_ + offset),
                   fmt::format("{} bytes should follow here, and there are {}", size,
                               offset > data_.size() ? 0 : data_.size() - offset),
-                  "It is cut off or damaged: copy or export it again");
+                  copy_again);
 }
 
 }  // namespace surf::io

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "files/damaged.h"
 #include "samples.h"
 #include "scan_formats.h"
 #include "tiff_tags.h"
@@ -63,7 +64,7 @@ Scan parse_park(const std::string& file, std::string_view content) {
   const TiffPage& page = pages.front();
   const TiffTag *const data = page.find(data_tag), *const header_value = page.find(header_tag);
   if (page.number(magic_tag) != double(magic) || !data || !header_value)
-    bytes.fail("its samples or their header are missing", "It is damaged or edited: copy it again");
+    bytes.fail("its samples or their header are missing", copy_again);
   const Bytes& header = header_value->bytes();
   const auto version = static_cast<std::uint32_t>(page.number(version_tag).value_or(0));
   const auto width = header.little<std::int32_t>(width_at),

@@ -10,6 +10,7 @@
 #include <limits>
 #include <utility>
 
+#include "files/damaged.h"
 #include "surf/core/error.h"
 
 namespace surf::io {
@@ -96,14 +97,14 @@ void check_scan_size(const std::string& file, double width, double height, std::
                         height == std::floor(height);
   if (!possible) {
     throw FileError(file, fmt::format("an image of {:g} x {:g} samples cannot be", width, height),
-                    "It is damaged: copy or export it again");
+                    copy_again);
   }
   if (width * height * double(bytes_each) > double(file_bytes)) {
     throw FileError(
         file,
         fmt::format("its {:.0f} x {:.0f} samples take {:.0f} bytes, and the file has {}", width,
                     height, width * height * double(bytes_each), file_bytes),
-        "It is cut off or damaged: copy or export it again");
+        copy_again);
   }
 }
 

@@ -12,6 +12,7 @@
 #include <type_traits>
 
 #include "files/base64.h"
+#include "files/damaged.h"
 #include "files/side_file.h"
 #include "files/text_scanner.h"
 #include "surf/core/error.h"
@@ -179,7 +180,7 @@ std::string_view GltfAccessors::buffer(std::uint64_t index) {
   }
   if (content.size() < bytes) {
     buffer.fail(fmt::format("{} bytes are announced, and there are {}", bytes, content.size()),
-                "It is cut off: copy or export it again");
+                copy_again);
   }
   return content.substr(0, bytes);
 }
@@ -226,7 +227,7 @@ std::vector<double> GltfAccessors::decode(const JsonValue& owner, const Layout& 
   // (count - 1) * stride + element_bytes <= size, without overflow.
   if (size < layout.element_bytes || (size - layout.element_bytes) / stride < layout.count - 1) {
     owner.fail(fmt::format("{} values do not fit in the {} bytes of its view", layout.count, size),
-               "It is cut off or damaged: copy or export it again");
+               copy_again);
   }
   std::vector<double> values;
   values.reserve(layout.count * layout.components);

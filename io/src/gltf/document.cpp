@@ -9,6 +9,7 @@
 #include <cmath>
 #include <utility>
 
+#include "files/damaged.h"
 #include "files/text_scanner.h"
 #include "names.h"
 #include "surf/core/error.h"
@@ -31,7 +32,7 @@ using Container = GltfDocument::Container;
 /// 4.4: a header of 12 bytes, then chunks of a length, a type and their bytes.
 Container open_glb(const std::string& file, std::string_view content) {
   const auto cut_off = [&](const std::string& reason) -> FileError {
-    return {file, reason, "It is cut off or damaged: copy or export it again"};
+    return {file, reason, copy_again};
   };
   if (content.size() < 20) throw cut_off("it ends within its header");
   if (const std::uint32_t version = little_endian_32(content, 4); version != 2) {

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "files/damaged.h"
 #include "files/text_scanner.h"
 #include "mesh_format.h"
 #include "text_output.h"
@@ -54,8 +55,7 @@ Counts parse_counts(TextScanner& scanner, std::size_t bytes) {
 void expect_line(TextScanner& scanner, std::string_view what, std::uint64_t done,
                  std::uint64_t count) {
   if (!scanner.next_filled_line()) {
-    scanner.fail(fmt::format("the file ends after {} of {} {}", done, count, what),
-                 "It is cut off: copy or export it again");
+    scanner.fail(fmt::format("the file ends after {} of {} {}", done, count, what), copy_again);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <utility>
 
+#include "files/damaged.h"
 #include "files/text_scanner.h"
 #include "surf/core/error.h"
 
@@ -99,7 +100,7 @@ void check_counts(const TextScanner& scanner, const PlyHeader& header, std::size
     if (size > 0 && element.count > available / size) {
       scanner.fail(fmt::format("the header announces {} of '{}', but only {} bytes follow",
                                element.count, shown(element.name), bytes - header.body),
-                   "The file is cut off or its header is wrong: copy or export it again");
+                   copy_again);
     }
   }
 }
@@ -144,7 +145,7 @@ PlyHeader parse_ply_header(const std::string& file, std::string_view content) {
     } else if (keyword == "end_header") {
       break;
     } else if (keyword.empty()) {
-      scanner.fail("the file ends inside the header", "It is cut off: copy or export it again");
+      scanner.fail("the file ends inside the header", copy_again);
     } else {
       scanner.fail(fmt::format("'{}' does not belong in a PLY header", shown(keyword)));
     }

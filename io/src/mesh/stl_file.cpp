@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cstring>
 
+#include "files/damaged.h"
 #include "files/text_scanner.h"
 #include "little_endian.h"
 #include "mesh_format.h"
@@ -65,8 +66,7 @@ TriangleMesh parse_binary(const std::string& file, std::string_view content) {
 void expect_word(TextScanner& scanner, std::string_view expected) {
   const std::string_view found = scanner.word_on_any_line();
   if (found.empty()) {
-    scanner.fail(fmt::format("the file ends where '{}' is expected", expected),
-                 "It is cut off: copy or export it again");
+    scanner.fail(fmt::format("the file ends where '{}' is expected", expected), copy_again);
   }
   if (!same_word(found, expected)) {
     scanner.fail(fmt::format("expected '{}', found '{}'", expected, shown(found)));
@@ -105,7 +105,7 @@ TriangleMesh parse_text(const std::string& file, std::string_view content) {
         scanner.skip_line();
         break;
       } else if (word.empty()) {
-        scanner.fail("the file ends without 'endsolid'", "It is cut off: copy or export it again");
+        scanner.fail("the file ends without 'endsolid'", copy_again);
       } else {
         scanner.fail(fmt::format("expected 'facet' or 'endsolid', found '{}'", shown(word)));
       }
@@ -180,14 +180,14 @@ ParsedFile parse_stl(const std::string& file, std::string_view content) {
   }
   if (content.size() < header_bytes) {
     throw FileError(file, fmt::format("{} bytes are too few for an STL file", content.size()),
-                    "It is cut off or something else: copy or export it again");
+                    copy_again);
   }
   const std::uint64_t count = little_endian_32(content.data() + 80);
   throw FileError(file,
                   fmt::format("the header announces {} triangles, which take {} bytes, but the "
                               "file has {}",
                               count, header_bytes + facet_bytes * count, content.size()),
-                  "It is cut off or damaged: copy or export it again");
+                  copy_again);
 }
 
 constexpr std::array stl_forms{SurfaceFormat{.extension = ".stl", .magnified = true}};

@@ -58,7 +58,7 @@ class CairoCanvas final : public Canvas {
 
   void check(cairo_status_t status) const {
     if (status == CAIRO_STATUS_SUCCESS) return;
-    throw FileError(file_, fmt::format("cannot be drawn: {}", cairo_status_to_string(status)),
+    throw FileError(file_, fmt::format("it cannot be drawn: {}", cairo_status_to_string(status)),
                     "Check the free space and memory, or choose another place or a smaller size");
   }
 

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "files/damaged.h"
 #include "image_formats.h"
 #include "pyramid.h"
 #include "raster_functions.h"
@@ -107,7 +108,7 @@ std::vector<float> read_values(OIIO::ImageInput& input, const std::string& file)
   if (!input.read_image(input.current_subimage(), input.current_miplevel(), 0, spec.nchannels,
                         OIIO::TypeDesc::FLOAT, values.data())) {
     throw FileError(file, fmt::format("its pixels cannot be read: {}", input.geterror()),
-                    "It is cut off or damaged: copy or write it again");
+                    copy_again);
   }
   double full_scale = 0;  // OpenImageIO maps whole numbers to 0 ... 1 or -1 ... 1
   switch (spec.format.basetype) {
@@ -228,7 +229,7 @@ void go_to(OIIO::ImageInput& input, const std::string& file, const Pages& pages,
   throw FileError(file,
                   fmt::format("page {} of {} is missing", pages.of(channel, level) + 1,
                               pages.channels * (pages.mip ? 1 : pages.levels)),
-                  "It is cut off or damaged: copy or write it again");
+                  copy_again);
 }
 
 std::unique_ptr<OIIO::ImageInput> open_raster(const std::filesystem::path& path) {
@@ -238,7 +239,8 @@ std::unique_ptr<OIIO::ImageInput> open_raster(const std::filesystem::path& path)
   config.attribute("oiio:UnassociatedAlpha", 1);
   auto input = OIIO::ImageInput::open(path.string(), &config);
   if (!input) {
-    throw FileError(path.string(), fmt::format("cannot be read as an image: {}", OIIO::geterror()),
+    throw FileError(path.string(),
+                    fmt::format("it cannot be read as an image: {}", OIIO::geterror()),
                     "Check that its content fits its name, or write it again");
   }
   if (std::string_view(input->format_name()) == "tiff") check_tiff_structure(path);
@@ -380,7 +382,7 @@ int raster_bits(const std::filesystem::path& path) {
   keep_quiet();
   const auto input = OIIO::ImageInput::open(path.string());
   if (!input)
-    throw FileError(path.string(), "cannot be read as an image: " + OIIO::geterror(),
+    throw FileError(path.string(), "it cannot be read as an image: " + OIIO::geterror(),
                     "Check its content");
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.format.is_floating_point()) return 0;

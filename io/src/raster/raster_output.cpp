@@ -28,7 +28,7 @@ void leave_out_date(OIIO::ImageSpec& spec) { spec.attribute("DateTime", 0); }
 
 void check_written(bool done, OIIO::ImageOutput& output, const std::string& file) {
   if (done) return;
-  throw FileError(file, fmt::format("cannot be written: {}", output.geterror()),
+  throw FileError(file, fmt::format("it cannot be written: {}", output.geterror()),
                   "Check the free space, or choose another format or place");
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "files/damaged.h"
 #include "surf/core/error.h"
 
 namespace surf::io {
@@ -15,7 +16,7 @@ void require_stored(const std::string& file, double pixel_bytes, double least_by
       file,
       fmt::format("its pixels would be {:.3g} GB, and a file of {} bytes cannot hold so many",
                   pixel_bytes / 1e9, file_bytes),
-      "It is cut off or damaged: copy or write it again");
+      copy_again);
 }
 
 }  // namespace surf::io

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "files/damaged.h"
 #include "image_formats.h"
 #include "stored_pixels.h"
 #include "surf/core/error.h"
@@ -72,8 +73,7 @@ class TiffStructure {
 
   [[noreturn]] void fail(std::uint64_t offset) const {
     throw FileError(fmt::format("{}, byte {}", path_.string(), offset),
-                    fmt::format("the file has only {} bytes", size_),
-                    "It is cut off or damaged: copy or write it again");
+                    fmt::format("the file has only {} bytes", size_), copy_again);
   }
 
   void require(std::uint64_t offset, std::uint64_t bytes) const {

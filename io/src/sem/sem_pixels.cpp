@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "files/damaged.h"
 #include "surf/core/error.h"
 
 namespace surf::io {
@@ -49,8 +50,7 @@ std::string strip_bytes(const TiffPage& page, const Bytes& file, std::size_t wan
     if (!place || !size || *place < 0 || *size < 0) break;
     bytes += file.part(static_cast<std::size_t>(*place), static_cast<std::size_t>(*size)).text();
   }
-  if (bytes.size() < wanted)
-    file.fail("its pixels are not all there", "It is cut off or damaged: copy it again");
+  if (bytes.size() < wanted) file.fail("its pixels are not all there", copy_again);
   return bytes;
 }
 
@@ -83,7 +83,7 @@ SemPixels palette_pixels(const TiffPage& page, const Bytes& file) {
   const double width = page.number(tag_width).value_or(0),
                height = page.number(tag_height).value_or(0);
   if (!(width >= 1 && height >= 1 && width * height <= static_cast<double>(file.size())))
-    file.fail(fmt::format("{:g} x {:g} pixels do not fit into it", width, height), "Copy it again");
+    file.fail(fmt::format("{:g} x {:g} pixels do not fit into it", width, height), copy_again);
   const int w = static_cast<int>(width), h = static_cast<int>(height);
   const std::string bytes =
       strip_bytes(page, file, static_cast<std::size_t>(w) * static_cast<std::size_t>(h));

@@ -49,7 +49,7 @@ std::string write_data(const std::filesystem::path& target, const std::string& f
   if (writer->Write() != 1 || writer->GetErrorCode() != 0 || !complaints.text().empty()) {
     throw FileError(
         file,
-        fmt::format("cannot be written: error {} {}", writer->GetErrorCode(), complaints.text()),
+        fmt::format("it cannot be written: error {} {}", writer->GetErrorCode(), complaints.text()),
         "Check the free space, or choose another place");
   }
   return target.empty() ? writer->GetOutputString() : std::string{};

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <pugixml.hpp>
 
+#include "files/damaged.h"
 #include "files/text_scanner.h"
 #include "surf/core/error.h"
 #include "vtk_data.h"
@@ -85,7 +86,7 @@ VtkXml::~VtkXml() = default;
 
 void VtkXml::fail(const std::string& place, const std::string& reason) const {
   throw FileError(place.empty() ? impl_->file : fmt::format("{}, {}", impl_->file, place), reason,
-                  "It is cut off or damaged: copy or write it again");
+                  copy_again);
 }
 
 VtkXml::Element VtkXml::data() const {

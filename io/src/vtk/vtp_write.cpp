@@ -146,7 +146,7 @@ std::string vtp_content(const std::string& file, vtkPolyData* data) {
   writer->WriteToOutputStringOn();
   writer->SetCompressionLevel(1);  // fast rather than small
   if (writer->Write() != 1 || !complaints.text().empty()) {
-    throw FileError(file, fmt::format("cannot be written: {}", complaints.text()),
+    throw FileError(file, fmt::format("it cannot be written: {}", complaints.text()),
                     "Check the memory, or choose another format");
   }
   return writer->GetOutputString();

@@ -12,19 +12,19 @@ namespace surf {
 /// Throws UsageError unless `value` is finite and above 0.
 inline void require_positive(double value, const std::string& subject) {
   if (std::isfinite(value) && value > 0) return;
-  throw UsageError(subject, "is " + format_exact(value), "Give a finite number above 0");
+  throw UsageError(subject, "it is " + format_exact(value), "Give a finite number above 0");
 }
 
 /// Throws UsageError unless `value` is finite and not below 0.
 inline void require_not_negative(double value, const std::string& subject) {
   if (std::isfinite(value) && value >= 0) return;
-  throw UsageError(subject, "is " + format_exact(value), "Give a finite number, 0 or above");
+  throw UsageError(subject, "it is " + format_exact(value), "Give a finite number, 0 or above");
 }
 
 /// Throws UsageError unless `value` is finite.
 inline void require_finite(double value, const std::string& subject) {
   if (std::isfinite(value)) return;
-  throw UsageError(subject, "is " + format_exact(value), "Give a finite number");
+  throw UsageError(subject, "it is " + format_exact(value), "Give a finite number");
 }
 
 }  // namespace surf

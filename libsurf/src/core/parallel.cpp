@@ -67,7 +67,7 @@ class Queue {
 
 int resolve_threads(int requested) {
   if (requested < 0) {
-    throw UsageError("threads", "is " + std::to_string(requested),
+    throw UsageError("threads", "it is " + std::to_string(requested),
                      "Give 1 or more, or 0 for one per hardware thread");
   }
   if (requested > 0) return requested;

@@ -229,7 +229,8 @@ double unit_length_nm(std::string_view unit, std::string_view subject) {
 
 std::string format_length(double length_nm, int digits) {
   if (digits < 1 || digits > 17) {
-    throw UsageError("digits", "is " + std::to_string(digits), "Give 1 to 17 significant digits");
+    throw UsageError("digits", "it is " + std::to_string(digits),
+                     "Give 1 to 17 significant digits");
   }
   if (length_nm == 0 || !std::isfinite(length_nm)) {
     return fmt::format("{} nm", length_nm == 0 ? 0.0 : length_nm);

@@ -44,7 +44,7 @@ int continued_index(int index, int count, Edge edge) {
       return std::min(folded, period - folded);
     }
   }
-  throw UsageError("edge", "is none of mirror, flat and periodic", "Give one of them");
+  throw UsageError("edge", "it is none of mirror, flat and periodic", "Give one of them");
 }
 
 /// The index of the sample for each of `margin + count + margin` samples.

@@ -71,7 +71,7 @@ Vec3 middle_of_overlap(const Box& a, const Box& b) {
 
 SelfIntersections find_self_intersections(const TriangleMesh& mesh,
                                           const SelfIntersectionOptions& options) {
-  if (options.limit == 0) throw UsageError("limit", "is 0", "Give 1 or more");
+  if (options.limit == 0) throw UsageError("limit", "it is 0", "Give 1 or more");
   validate(mesh);
   const Watch& watch = options.watch;
   watch.check();

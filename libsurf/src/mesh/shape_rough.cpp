@@ -146,7 +146,7 @@ HeightField make_self_affine(const FieldExtent& extent, double rms_nm, double co
   require_positive(rms_nm, "rms height");
   require_positive(correlation_nm, "correlation length");
   if (!(hurst > 0 && hurst <= 1)) {
-    throw UsageError("Hurst exponent", fmt::format("is {}", hurst),
+    throw UsageError("Hurst exponent", fmt::format("it is {}", hurst),
                      "Give a number above 0, at most 1");
   }
   HeightField field = flat_field(extent);

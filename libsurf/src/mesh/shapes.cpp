@@ -16,7 +16,7 @@ namespace {
 
 void require_range(int value, int lowest, int highest, const char* subject) {
   if (value >= lowest && value <= highest) return;
-  throw UsageError(subject, fmt::format("is {}", value),
+  throw UsageError(subject, fmt::format("it is {}", value),
                    fmt::format("Give a whole number from {} to {}", lowest, highest));
 }
 

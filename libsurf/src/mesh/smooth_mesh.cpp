@@ -12,7 +12,7 @@ namespace {
 
 void require_share(double value, const char* subject) {
   if (value > 0 && value < 1) return;
-  throw UsageError(subject, "is " + format_exact(value), "Give a number between 0 and 1");
+  throw UsageError(subject, "it is " + format_exact(value), "Give a number between 0 and 1");
 }
 
 /// The edges between points, each pair once, and the points that may move.
@@ -51,7 +51,7 @@ void step(const Net& net, double factor, std::vector<Vec3>& place, std::vector<V
 
 TriangleMesh smooth_mesh(const TriangleMesh& mesh, const SmoothOptions& options) {
   if (options.iterations < 0) {
-    throw UsageError("smoothing iterations", "is " + std::to_string(options.iterations),
+    throw UsageError("smoothing iterations", "it is " + std::to_string(options.iterations),
                      "Give 0 or more");
   }
   require_share(options.step, "smoothing step");

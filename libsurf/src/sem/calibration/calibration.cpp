@@ -53,7 +53,7 @@ void check(const CalibrationImages& images, const CalibrationOptions& options) {
            "Give 1 / variance, or 0 to leave a pixel out");
   if (options.offset) require_finite(*options.offset, "calibration offset");
   if (!(options.highest_condition >= 1))
-    throw UsageError("calibration highest_condition", "is below 1", "Give 1 or above");
+    throw UsageError("calibration highest_condition", "it is below 1", "Give 1 or above");
   if (!(options.black < options.white))
     throw UsageError("calibration levels", "black is not below white", "Exchange them");
   if (options.ratios.empty()) return;

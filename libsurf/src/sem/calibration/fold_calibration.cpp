@@ -13,7 +13,7 @@ FilterBankParameters fold_calibration(const FilterBankParameters& parameters,
   if (gains.size() != parameters.channels.size())
     throw InvalidInput(
         "calibration",
-        fmt::format("has {} gains for {} channels", gains.size(), parameters.channels.size()),
+        fmt::format("it has {} gains for {} channels", gains.size(), parameters.channels.size()),
         "Give one for each channel");
   FilterBankParameters folded{parameters.scales, parameters.multi_resolution, {}};
   const std::vector<double> none(parameters.scales.size());

@@ -33,7 +33,7 @@ void check(const std::vector<double>& values, std::size_t scales,
 
 void check(const FilterBankParameters& parameters) {
   if (parameters.scales.empty() || parameters.scales.size() > 64)
-    throw InvalidInput("filter bank", fmt::format("has {} scales", parameters.scales.size()),
+    throw InvalidInput("filter bank", fmt::format("it has {} scales", parameters.scales.size()),
                        "Give 1 to 64");
   for (const FacetScale& scale : parameters.scales) facet_kernel(scale, 1);
   for (const FilterBankChannel& channel : parameters.channels) {

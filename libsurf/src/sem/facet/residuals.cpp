@@ -43,7 +43,7 @@ std::vector<ModelResidual> residuals_of(const ImageModel& model,
   if (images.front().images.size() != channels)
     throw InvalidInput(
         images.front().name,
-        fmt::format("has {} channels, the model has {}", images.front().images.size(), channels),
+        fmt::format("it has {} channels, the model has {}", images.front().images.size(), channels),
         "Give images of the model's channels");
   std::vector<Sums> sums(channels);
   for (const TrainingImage& image : images) {

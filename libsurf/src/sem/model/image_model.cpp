@@ -18,7 +18,7 @@ bool alike(double a, double b) { return std::abs(a - b) <= pixel_tolerance * b; 
 void check_number(double model, double wanted, const char* what, const char* unit) {
   if (wanted == 0 || alike(wanted, model)) return;
   throw UsageError("model",
-                   fmt::format("was made for {} of {} {}, the image is of {} {}", what,
+                   fmt::format("it was made for {} of {} {}, the image is of {} {}", what,
                                format_exact(model), unit, format_exact(wanted), unit),
                    "Use a model made for these conditions, or train one: semsurf train");
 }
@@ -29,7 +29,7 @@ void check_field(const ModelScope& scope, const HeightField& field, const char* 
   validate(field, subject);
   for (const unsigned char valid : field.valid.data())
     if (valid == 0)
-      throw InvalidInput(subject, "has samples without a height, and a model needs all of them",
+      throw InvalidInput(subject, "it has samples without a height, and a model needs all of them",
                          "Fill them: semsurf clean");
   if (scope.pixel_nm == 0) return;
   const double x = field.pitch_x_nm, y = field.pitch_y_nm;
@@ -38,13 +38,14 @@ void check_field(const ModelScope& scope, const HeightField& field, const char* 
   if (!alike(x, y))
     throw InvalidInput(
         subject,
-        fmt::format("is sampled every {} nm along x and every {} nm along y, the model was "
+        fmt::format("it is sampled every {} nm along x and every {} nm along y, the model was "
                     "made for {} nm along both",
                     format_exact(x), format_exact(y), model),
         "Resample the heights, or train a model for such samples on square ones");
   throw InvalidInput(
       subject,
-      fmt::format("is sampled every {} nm, the model was made for {} nm", format_exact(x), model),
+      fmt::format("it is sampled every {} nm, the model was made for {} nm", format_exact(x),
+                  model),
       fmt::format(
           "Resample the heights to {} nm (semsurf predict --resample), or train a model for {} nm",
           model, format_exact(x)));
@@ -54,7 +55,7 @@ void check_conditions(const ModelScope& scope, const ModelScope& wanted) {
   if (!scope.material.empty() && !wanted.material.empty() && scope.material != wanted.material)
     throw UsageError(
         "model",
-        fmt::format("was made for {}, the image is of {}", scope.material, wanted.material),
+        fmt::format("it was made for {}, the image is of {}", scope.material, wanted.material),
         "Use a model made for this material, or train one: semsurf train");
   if (scope.pixel_nm != 0) check_number(scope.pixel_nm, wanted.pixel_nm, "pixels", "nm");
   if (scope.energy_ev != 0) check_number(scope.energy_ev, wanted.energy_ev, "a beam", "eV");

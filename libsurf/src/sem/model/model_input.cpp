@@ -19,12 +19,12 @@ constexpr double most_span = 1e12;
 void check_finite(const Grid<double>& values, const Grid<double>& z_nm, const char* subject) {
   if (values.width() != z_nm.width() || values.height() != z_nm.height())
     throw InvalidInput(subject,
-                       fmt::format("has {} x {} pixels, the heights have {} x {}", values.width(),
-                                   values.height(), z_nm.width(), z_nm.height()),
+                       fmt::format("it has {} x {} pixels, the heights have {} x {}",
+                                   values.width(), values.height(), z_nm.width(), z_nm.height()),
                        "Give one value for each sample");
   for (const double value : values.data())
     if (!std::isfinite(value))
-      throw InvalidInput(subject, fmt::format("holds {}", value), "All values must be finite");
+      throw InvalidInput(subject, fmt::format("it holds {}", value), "All values must be finite");
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ void check_weights(const ModelImages& weights, std::size_t channels, const Grid<
   if (weights.size() != channels)
     throw InvalidInput(
         "weights",
-        fmt::format("are {} images, the model has {} channels", weights.size(), channels),
+        fmt::format("there are {} images, the model has {} channels", weights.size(), channels),
         "Give one image for each channel");
   for (const Grid<double>& image : weights) check_finite(image, z_nm, "weights");
 }
@@ -60,12 +60,12 @@ double magnitude(const std::vector<double>& values) {
 
 void check_channels(const std::vector<std::string>& names, const char* subject) {
   if (names.empty() || names.size() > 8)
-    throw InvalidInput(subject, fmt::format("has {} channels", names.size()), "Give 1 to 8");
+    throw InvalidInput(subject, fmt::format("it has {} channels", names.size()), "Give 1 to 8");
   std::set<std::string> seen;
   for (const std::string& name : names) {
-    if (name.empty()) throw InvalidInput(subject, "has a channel without a name", "Name it");
+    if (name.empty()) throw InvalidInput(subject, "it has a channel without a name", "Name it");
     if (!seen.insert(name).second)
-      throw InvalidInput(subject, fmt::format("has two channels \"{}\"", name),
+      throw InvalidInput(subject, fmt::format("it has two channels \"{}\"", name),
                          "Give each its own name");
   }
 }

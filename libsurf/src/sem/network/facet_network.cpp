@@ -40,10 +40,10 @@ void check_layer(const DenseLayer& layer, std::size_t number, int inputs) {
 
 void check(const FacetNetworkParameters& p) {
   if (p.scales.empty() || p.scales.size() > 32)
-    throw InvalidInput(subject, fmt::format("has {} scales", p.scales.size()), "Give 1 to 32");
+    throw InvalidInput(subject, fmt::format("it has {} scales", p.scales.size()), "Give 1 to 32");
   for (const FacetScale& scale : p.scales) facet_kernel(scale, 1);
   if (p.sky_edges_nm.size() == 1 || p.sky_edges_nm.size() > 13)
-    throw InvalidInput(subject, fmt::format("has {} limits of sky bands", p.sky_edges_nm.size()),
+    throw InvalidInput(subject, fmt::format("it has {} limits of sky bands", p.sky_edges_nm.size()),
                        "Give none, or 2 to 13");
   for (std::size_t i = 0; i < p.sky_edges_nm.size(); ++i)
     if (i == 0 ? p.sky_edges_nm[0] != 0
@@ -51,7 +51,7 @@ void check(const FacetNetworkParameters& p) {
       throw InvalidInput(subject, fmt::format("a limit of its sky bands is {}", p.sky_edges_nm[i]),
                          "They rise from 0, in nm");
   if (p.layers.empty() || p.layers.size() > 4)
-    throw InvalidInput(subject, fmt::format("has {} layers", p.layers.size()), "Give 1 to 4");
+    throw InvalidInput(subject, fmt::format("it has {} layers", p.layers.size()), "Give 1 to 4");
   int inputs = network_inputs(p);
   for (std::size_t i = 0; i < p.layers.size(); ++i) {
     check_layer(p.layers[i], i, inputs);
@@ -59,7 +59,7 @@ void check(const FacetNetworkParameters& p) {
   }
   if (static_cast<std::size_t>(inputs) != p.channels.size())
     throw InvalidInput(subject,
-                       fmt::format("has {} outputs for {} channels", inputs, p.channels.size()),
+                       fmt::format("it has {} outputs for {} channels", inputs, p.channels.size()),
                        "Give one for each");
   for (const FacetNetworkParameters::Channel& channel : p.channels)
     if (!(channel.scale > 0 && channel.scale <= most))

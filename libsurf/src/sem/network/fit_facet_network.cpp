@@ -57,10 +57,11 @@ double pixel_of(const std::vector<TrainingImage>& images) {
     const HeightField& f = image.field;
     if (std::abs(f.pitch_x_nm - pixel) > 1e-3 * pixel ||
         std::abs(f.pitch_y_nm - pixel) > 1e-3 * pixel)
-      throw InvalidInput(image.name,
-                         fmt::format("has pixels of {:.4g} x {:.4g} nm, the first image {:.4g} nm",
-                                     f.pitch_x_nm, f.pitch_y_nm, pixel),
-                         "A network is learnt for one size of square pixels: resample the surface");
+      throw InvalidInput(
+          image.name,
+          fmt::format("it has pixels of {:.4g} x {:.4g} nm, the first image {:.4g} nm",
+                      f.pitch_x_nm, f.pitch_y_nm, pixel),
+          "A network is learnt for one size of square pixels: resample the surface");
   }
   return pixel;
 }

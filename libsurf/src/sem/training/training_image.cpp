@@ -50,15 +50,15 @@ void validate(const std::vector<TrainingImage>& images) {
   for (const TrainingImage& image : images) {
     check_field({}, image.field, image.name.c_str());
     if (image.images.empty())
-      throw InvalidInput(image.name, "has no channels", "Give at least one");
+      throw InvalidInput(image.name, "it has no channels", "Give at least one");
     if (image.images.size() != channels)
       throw InvalidInput(image.name,
-                         fmt::format("has {} channels, {} has {}", image.images.size(),
+                         fmt::format("it has {} channels, {} has {}", image.images.size(),
                                      images.front().name, channels),
                          "Give images of the same channels");
     if (!image.standard_errors.empty() && image.standard_errors.size() != channels)
       throw InvalidInput(image.name,
-                         fmt::format("has {} channels and {} standard errors", channels,
+                         fmt::format("it has {} channels and {} standard errors", channels,
                                      image.standard_errors.size()),
                          "Give one for each channel, or none");
     for (const Grid<float>& grid : image.images) check_size(image, grid, "a channel");
