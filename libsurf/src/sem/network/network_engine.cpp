@@ -182,7 +182,7 @@ Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm, const ModelIma
       worker.slopes.resize(worker.values.size());
       worker.work.resize(2 * static_cast<std::size_t>(widest_) * columns);
       worker.out.assign(static_cast<std::size_t>(columns) * weights.size(), T(0));
-      worker.along_sky.resize(2 * planes.samples.size() * columns);
+      worker.along_sky.resize(planes.samples.size() * columns);
       mine.inputs.resize(static_cast<std::size_t>(block.rows * stride));
       mine.tile.assign(static_cast<std::size_t>(tile_stride * (block.rows + 2 * reach)), T(0));
       for (int y = 0; y < block.rows; ++y) {
