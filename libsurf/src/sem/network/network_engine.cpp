@@ -36,7 +36,7 @@ struct NetworkEngine<T>::Worker {
 /// heights that the sky view of its pixels depends on, which reach beyond the block.
 template <class T>
 struct NetworkEngine<T>::Given {
-  AlignedVector<T> coefficients, sky;
+  T *coefficients, *sky;
 };
 
 template <class T>
@@ -153,7 +153,7 @@ void NetworkEngine<T>::inputs(const Grid<double>& z_nm, const Sink& sink) const 
 template <class T>
 void NetworkEngine<T>::pull_back(const Grid<double>& z_nm, const ModelImages& weights, double unit,
                                  const Planes& planes, const Block& block, Worker& worker,
-                                 Given& given) const {
+                                 const Given& given) const {
   const int columns = pass_.columns(), count = static_cast<int>(layers_.size());
   const int reach = view_.reach();
   const std::ptrdiff_t stride = std::ptrdiff_t{inputs_} * columns;
@@ -163,7 +163,7 @@ void NetworkEngine<T>::pull_back(const Grid<double>& z_nm, const ModelImages& we
   worker.work.resize(2 * static_cast<std::size_t>(widest_) * columns);
   worker.along_sky.resize(planes.samples.size() * columns);
   worker.out.assign(static_cast<std::size_t>(columns) * weights.size(), T(0));
-  given.sky.assign(static_cast<std::size_t>(planes.tile_stride * (block.rows + 2 * reach)), T(0));
+  std::fill_n(given.sky, planes.tile_stride * (block.rows + 2 * reach), T(0));
   for (int y = 0; y < block.rows; ++y) {
     for (std::size_t c = 0; c < weights.size(); ++c) {
       const double scale = parameters_.channels[c].scale / unit;
@@ -179,22 +179,21 @@ void NetworkEngine<T>::pull_back(const Grid<double>& z_nm, const ModelImages& we
       loops_->sky_back(planes.heights.at(block.x, block.y + y), planes.samples.data(),
                        static_cast<int>(planes.samples.size()), view_.bands(),
                        inputs + pass_.scales() * network::facet_inputs * columns,
-                       given.sky.data() + (y + reach) * planes.tile_stride + reach,
-                       planes.to.data(), worker.along_sky.data());
+                       given.sky + (y + reach) * planes.tile_stride + reach, planes.to.data(),
+                       worker.along_sky.data());
   }
   const std::ptrdiff_t size = std::ptrdiff_t{block.rows} * facet::coefficients * columns;
-  given.coefficients.resize(static_cast<std::size_t>(size * pass_.scales()));
   for (int s = 0; s < pass_.scales(); ++s)
     loops_->facets_back(pass_.fit(s, worker.scratch), block.rows, lengths_[s],
                         worker.inputs.data() + s * network::facet_inputs * columns, stride,
-                        given.coefficients.data() + s * size);
+                        given.coefficients + s * size);
 }
 
 template <class T>
 void NetworkEngine<T>::add_sky(const Block& block, const Given& given, double unit,
                                Grid<double>& gradient) const {
   const int reach = view_.reach();
-  const T* from = given.sky.data();
+  const T* from = given.sky;
   for (int y = -reach; y < block.rows + reach; ++y, from += pass_.columns() + 2 * reach) {
     const int row = border_sample(block.y + y, gradient.height(), options_.edge);
     // Beyond the block's width all values are 0, because their weights are 0.
@@ -214,9 +213,21 @@ Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm,
   const Planes planes = this->planes(z_nm);
   facet::TransposedFits<T> transposed(pass_, options_.edge, options_.threads);
   std::vector<Worker> workers(options_.threads);
+  AlignedVector<T> memory;
   std::vector<Given> given;  // of a tile's blocks
+  const std::ptrdiff_t row_size =
+      std::ptrdiff_t{pass_.scales()} * facet::coefficients * pass_.columns();
   for (const facet::Tile& tile : transposed.tiles(z_nm.width(), z_nm.height())) {
-    given.resize(std::max(given.size(), tile.blocks.size()));
+    std::ptrdiff_t size = 0;
+    for (const Block& block : tile.blocks)
+      size += block.rows * row_size + (block.rows + 2 * view_.reach()) * planes.tile_stride;
+    memory.resize(std::max(memory.size(), static_cast<std::size_t>(size)));
+    given.clear();
+    T* at = memory.data();
+    for (const Block& block : tile.blocks) {
+      given.push_back({at, at + block.rows * row_size});
+      at = given.back().sky + (block.rows + 2 * view_.reach()) * planes.tile_stride;
+    }
     parallel_for(tile.blocks.size(), options_.threads, [&](std::size_t i, int w) {
       pull_back(z_nm, weights, unit, planes, tile.blocks[i], workers[w], given[i]);
     });
@@ -229,7 +240,7 @@ Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm,
         [&](int, int scale, const Block& block, std::size_t i, T* out) {
           const std::size_t size =
               static_cast<std::size_t>(block.rows) * facet::coefficients * pass_.columns();
-          std::copy_n(given[i].coefficients.data() + scale * size, size, out);
+          std::copy_n(given[i].coefficients + scale * size, size, out);
         },
         unit, gradient);
   }

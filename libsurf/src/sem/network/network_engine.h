@@ -39,7 +39,7 @@ class NetworkEngine {
                    Worker& worker) const;
   void pull_back(const Grid<double>& z_nm, const ModelImages& weights, double unit,
                  const Planes& planes, const facet::Block& block, Worker& worker,
-                 Given& given) const;
+                 const Given& given) const;
   void add_sky(const facet::Block& block, const Given& given, double unit,
                Grid<double>& gradient) const;
   void put(const facet::Block& block, double unit, Worker& worker, ModelImages& images) const;
