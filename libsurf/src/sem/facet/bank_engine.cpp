@@ -111,25 +111,31 @@ ModelImages BankEngine<T>::predict(const Grid<double>& z_nm) const {
   return images;
 }
 
-/// Computes weights of a scale's coefficients at a block's pixels from those of the images.
+/// Takes a block's weights of the images, divided by `unit`, a power of two.
 template <class T>
-void BankEngine<T>::pull_back(const Grid<double>& z_nm, const ModelImages& weights, double unit,
-                              int scale, const facet::CoarseFits<T>& coarse, const Block& block,
-                              Scratch& scratch, T* out) const {
-  const int channels = static_cast<int>(weights.size()), columns = pass_.columns();
-  scratch.weights.resize(static_cast<std::size_t>(channels) * block.rows * columns);
-  const double per_unit = 1 / unit;  // exact, for a power of two
-  T* to = scratch.weights.data();
+void BankEngine<T>::take_weights(const ModelImages& weights, double unit, const Block& block,
+                                 AlignedVector<T>& out) const {
+  const int columns = pass_.columns();
+  out.resize(weights.size() * static_cast<std::size_t>(block.rows) * columns);
+  const double per_unit = 1 / unit;
+  T* to = out.data();
   for (const Grid<double>& image : weights)
     for (int y = 0; y < block.rows; ++y, to += columns) {
       const double* const from = &image(block.x, block.y + y);
       for (int x = 0; x < block.width; ++x) to[x] = T(from[x] * per_unit);
       std::fill(to + block.width, to + columns, T(0));
     }
+}
+
+/// Computes weights of a scale's coefficients at a block's pixels from those of the images.
+template <class T>
+void BankEngine<T>::pull_back(const Grid<double>& z_nm, const AlignedVector<T>& weights, int scale,
+                              const facet::CoarseFits<T>& coarse, const Block& block,
+                              Scratch& scratch, T* out) const {
   if (fine_of_[scale] >= 0) pass_.load(z_nm, options_.edge, block, scratch.fine, fine_of_[scale]);
   const T* const k = fit(scale, coarse, block, scratch);
   pass_.loops().pull_back(k, block.rows, floors(scale, coarse, scratch), weights_[scale].data(),
-                          channels, scratch.weights.data(), out);
+                          static_cast<int>(parameters_.channels.size()), weights.data(), out);
 }
 
 template <class T>
@@ -141,19 +147,30 @@ Grid<double> BankEngine<T>::gradient(const Grid<double>& z_nm, const ModelImages
   const facet::CoarseFits<T> coarse = coarse_fits(z_nm);
   std::vector<Scratch> workers(options_.threads);
   facet::TransposedFits<T> transposed(pass_, options_.edge, options_.threads);
-  transposed.add_all(
-      [&](int w, int fine, const Block& block, std::size_t, T* out) {
-        pull_back(z_nm, weights, unit, scale_of_[fine], coarse, block, workers[w], out);
-      },
-      unit, gradient);
+  std::vector<AlignedVector<T>> of_tile;
+  for (const facet::Tile& tile : transposed.tiles(z_nm.width(), z_nm.height())) {
+    of_tile.resize(std::max(of_tile.size(), tile.blocks.size()));
+    parallel_for(tile.blocks.size(), options_.threads, [&](std::size_t i, int) {
+      take_weights(weights, unit, tile.blocks[i], of_tile[i]);
+    });
+    transposed.add(
+        tile,
+        [&](int w, int fine, const Block& block, std::size_t i, T* out) {
+          pull_back(z_nm, of_tile[i], scale_of_[fine], coarse, block, workers[w], out);
+        },
+        unit, gradient);
+  }
   const int columns = pass_.columns();
   const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
   const std::size_t strips = (z_nm.width() + columns - 1) / columns;
   coarse.transpose(
       [&](int w, int scale, const Block& column, T* out) {
-        for (std::size_t i = column.x / columns; i < blocks.size(); i += strips)
-          pull_back(z_nm, weights, unit, scale, coarse, blocks[i], workers[w],
+        for (std::size_t i = column.x / columns; i < blocks.size(); i += strips) {
+          Scratch& scratch = workers[w];
+          take_weights(weights, unit, blocks[i], scratch.weights);
+          pull_back(z_nm, scratch.weights, scale, coarse, blocks[i], scratch,
                     out + static_cast<std::ptrdiff_t>(blocks[i].y) * facet::coefficients * columns);
+        }
       },
       columns, options_.edge, options_.threads, unit, gradient);
   return gradient;

@@ -46,7 +46,9 @@ class BankEngine {
   ModelImages blank(const Grid<double>& z_nm, bool with_offset) const;
   void add(const facet::Block& block, const AlignedVector<T>& sum, double unit,
            ModelImages& images) const;
-  void pull_back(const Grid<double>& z_nm, const ModelImages& weights, double unit, int scale,
+  void take_weights(const ModelImages& weights, double unit, const facet::Block& block,
+                    AlignedVector<T>& out) const;
+  void pull_back(const Grid<double>& z_nm, const AlignedVector<T>& weights, int scale,
                  const facet::CoarseFits<T>& coarse, const facet::Block& block, Scratch& scratch,
                  T* out) const;
 
