@@ -234,7 +234,7 @@ int main(int argc, char** argv) {
   for (int n = 128; n <= most_pixels; n *= 2) {
     const HeightField large = rough(n);
     const double pixels = static_cast<double>(n) * n;
-    const int fewer = std::clamp(runs * 300 / n, 1, runs);
+    const int fewer = std::clamp(runs * 300 / n, std::min(runs, 3), runs);
     const Row of_full = measure(*full, large, fewer);
     print(fmt::format("{} x {}", n, n), of_full, pixels, of_bank, most);
     bank_flatness.add(of_full, pixels);
