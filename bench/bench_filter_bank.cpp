@@ -3,9 +3,13 @@
 // do at most.
 //   bench_filter_bank [runs, default 31] [pixels of the largest field along a side, default 4096]
 // Times are medians and least ones, CPU seconds of one thread: other programs on the machine slow
-// both. Of the peak is what the median reaches. Operations are counted as the passes do them on a
+// both. The floor is the time that the operations alone would take at the peak of the vector unit,
+// and the ratio is the median over the floor. Operations are counted as the passes do them on a
 // field without a border: for each pixel and scale 11 one-dimensional passes of a multiply-add per
-// pair of samples, and the sums and differences of the pairs; a transposed pass does the same.
+// pair of samples, and the sums and differences of the pairs; a transposed pass does the same, and
+// a gradient makes the fits again. The network adds, in each direction, its sky samples, the four
+// inputs of each scale, and its layers. At the end stands how far the time per pixel of the larger
+// images is from the smallest.
 #include <time.h>
 
 #include <algorithm>
@@ -103,7 +107,7 @@ FilterBankParameters bank(const std::vector<FacetScale>& scales, bool multi_reso
 }
 
 /// Of the shape that is learnt for silicon at 1 keV with 3 nm pixels; weights do not matter here.
-std::shared_ptr<const ImageModel> network() {
+FacetNetworkParameters network_parameters() {
   FacetNetworkParameters p;
   p.scales = network_scales(3, 30);
   p.sky_edges_nm = network_sky_edges(3, 30);
@@ -118,15 +122,31 @@ std::shared_ptr<const ImageModel> network() {
     for (int i = 0; i < outputs; ++i) layer.biases.push_back(random.uniform() - 0.5);
     inputs = outputs;
   }
-  ModelScope scope;
-  scope.pixel_nm = 2;
-  return make_facet_network(scope, p);
+  return p;
 }
 
-double operations(const std::vector<FacetScale>& scales) {
+/// A pixel's operations: of its images, and of images and gradient.
+struct Operations {
+  double value = 0, both = 0;
+};
+
+Operations operations(const std::vector<FacetScale>& scales) {
   double count = 0;
   for (const FacetScale& scale : scales) count += 20.0 * (scale.size / 2) + 9;
-  return count;
+  return {count, 3 * count};
+}
+
+Operations operations(const FacetNetworkParameters& p) {
+  // An inverse root takes 11 operations; each input of a scale takes two. 12 samples a direction,
+  // less the nearest bands of one step.
+  constexpr double root = 11, sample = root + 9, sample_back = root + 25, facet = 8 * root + 30,
+                   facet_back = facet + 50, samples = 180;
+  const double scales = static_cast<double>(p.scales.size());
+  double layers = 0;
+  for (const DenseLayer& layer : p.layers) layers += layer.outputs * (layer.inputs + root + 4.0);
+  const double value = operations(p.scales).value + samples * sample + scales * facet + layers;
+  return {value, 2 * value + operations(p.scales).value * 2 + samples * sample_back +
+                     scales * facet_back + layers};
 }
 
 struct Row {
@@ -143,16 +163,35 @@ Row measure(const ImageModel& model, const HeightField& field, int runs) {
   return row;
 }
 
-void print(const std::string& name, const Row& row, double pixels, double per_pixel, double peak) {
-  const auto part = [&](double seconds, double count) {
-    return 100e-9 * count * pixels / seconds / peak;
+void print(const std::string& name, const Row& row, double pixels, const Operations& count,
+           double peak) {
+  const auto columns = [&](const Time& time, double operations) {
+    const double floor = 1e-9 * operations * pixels / peak;
+    return fmt::format(" {:9.2f} {:8.2f} {:8.1f} {:8.2f} {:6.2f}", 1e3 * time.median,
+                       1e3 * time.least, 1e9 * time.median / pixels, 1e3 * floor,
+                       time.median / floor);
   };
-  fmt::print("{:<26} {:9.2f} {:8.2f} {:8.1f} {:6.0f}% {:9.2f} {:8.2f} {:8.1f} {:6.0f}%\n", name,
-             1e3 * row.value.median, 1e3 * row.value.least, 1e9 * row.value.median / pixels,
-             part(row.value.median, per_pixel), 1e3 * row.both.median, 1e3 * row.both.least,
-             1e9 * row.both.median / pixels, part(row.both.median, 3 * per_pixel));
+  fmt::print("{:<24}{}{}\n", name, columns(row.value, count.value), columns(row.both, count.both));
   std::fflush(stdout);
 }
+
+/// Least times per pixel of one model at several sizes of the image.
+struct Flatness {
+  std::vector<double> value, both;
+
+  void add(const Row& row, double pixels) {
+    value.push_back(row.value.least / pixels);
+    both.push_back(row.both.least / pixels);
+  }
+  static double most(const std::vector<double>& times) {
+    return *std::max_element(times.begin(), times.end()) /
+           *std::min_element(times.begin(), times.end());
+  }
+  void print(const char* name) const {
+    fmt::print("{}: largest over smallest time per pixel {:.2f}, with gradient {:.2f}\n", name,
+               most(value), most(both));
+  }
+};
 
 }  // namespace
 
@@ -160,24 +199,25 @@ int main(int argc, char** argv) {
   const int runs = argc > 1 ? std::max(1, std::atoi(argv[1])) : 31;
   const int most_pixels = argc > 2 ? std::atoi(argv[2]) : 4096;
   const std::vector<FacetScale> all = thesis_scales();
-  const double per_pixel = operations(all), most = peak();
+  const Operations of_bank = operations(all), of_network = operations(network_parameters());
+  const double most = peak();
   fmt::print(
-      "{:.0f} operations a pixel for ten scales; peak {:.0f} 10^9/s: {:.1f} ms at least for 300 x "
-      "300\n\n",
-      per_pixel, most, 1e-6 * per_pixel * 90000 / most);
-  fmt::print("{:<26} {:>9} {:>8} {:>8} {:>7} {:>9} {:>8} {:>8} {:>7}\n", "SE and BSE, one thread",
-             "value", "", "", "", "gradient", "too", "", "");
-  fmt::print("{:<26} {:>9} {:>8} {:>8} {:>7} {:>9} {:>8} {:>8} {:>7}\n", "", "ms", "least",
-             "ns/pixel", "of peak", "ms", "least", "ns/pixel", "of peak");
+      "{:.0f} operations a pixel for ten scales, {:.0f} for the network; peak {:.0f} 10^9/s\n\n",
+      of_bank.value, of_network.value, most);
+  fmt::print("{:<24} {:<44}{}\n", "SE and BSE, one thread", "images", "images and gradient");
+  fmt::print("{:<24}", "");
+  for (int i = 0; i < 2; ++i)
+    fmt::print(" {:>9} {:>8} {:>8} {:>8} {:>6}", "ms", "least", "ns/pixel", "floor", "ratio");
+  fmt::print("\n");
   const HeightField field = rough(300);
   const auto full = make_filter_bank({}, bank(all));
-  print("300 x 300, ten scales", measure(*full, field, runs), 90000, per_pixel, most);
+  print("300 x 300, ten scales", measure(*full, field, runs), 90000, of_bank, most);
   for (const FacetScale& scale : all)
     print(fmt::format("  {} x {} alone", scale.size, scale.size),
           measure(*make_filter_bank({}, bank({scale})), field, runs), 90000, operations({scale}),
           most);
   print("  multi-resolution", measure(*make_filter_bank({}, bank(all, true)), field, runs), 90000,
-        per_pixel, most);
+        of_bank, most);
   SlopeModelParameters slopes{SlopeForm::table, 5, {5, 0.6}, {}};
   for (const char* name : {"SE", "BSE"})
     slopes.channels.push_back({name, 1, std::vector<double>(18, 1.0)});
@@ -186,13 +226,23 @@ int main(int argc, char** argv) {
   slopes.form = SlopeForm::secant;
   print("  secant", measure(*make_slope_model({}, slopes), field, runs), 90000,
         operations({{5, 0.6}}), most);
-  const auto net = network();
-  print("  facet network", measure(*net, field, runs), 90000, per_pixel, most);
+  ModelScope scope;
+  scope.pixel_nm = 2;
+  const auto net = make_facet_network(scope, network_parameters());
+  print("  facet network", measure(*net, field, runs), 90000, of_network, most);
+  Flatness bank_flatness, network_flatness;
   for (int n = 128; n <= most_pixels; n *= 2) {
     const HeightField large = rough(n);
     const double pixels = static_cast<double>(n) * n;
-    const int fewer = std::clamp(runs * 300 / n, 1, runs);
-    print(fmt::format("{} x {}", n, n), measure(*full, large, fewer), pixels, per_pixel, most);
-    print("  facet network", measure(*net, large, fewer), pixels, per_pixel, most);
+    const int fewer = std::clamp(runs * 300 / n, std::min(runs, 3), runs);
+    const Row of_full = measure(*full, large, fewer);
+    print(fmt::format("{} x {}", n, n), of_full, pixels, of_bank, most);
+    bank_flatness.add(of_full, pixels);
+    const Row of_net = measure(*net, large, fewer);
+    print("  facet network", of_net, pixels, of_network, most);
+    network_flatness.add(of_net, pixels);
   }
+  if (most_pixels < 128) return 0;
+  bank_flatness.print("\nfilter bank");
+  network_flatness.print("facet network");
 }

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "surf/core/large_pages.h"
+
 namespace surf {
 
 /// A rectangle of samples, row-major. Sample (0, 0) is the lower-left one, x runs right, y runs up;
@@ -13,9 +15,12 @@ template <class T>
 class Grid {
  public:
   Grid() = default;
-  Grid(int width, int height, T value = T{})
-      : width_(width), height_(height),
-        data_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), value) {}
+  Grid(int width, int height, T value = T{}) : width_(width), height_(height) {
+    const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    data_.reserve(count);
+    prefer_large_pages(data_.data(), count * sizeof(T));
+    data_.resize(count, value);
+  }
 
   int width() const { return width_; }
   int height() const { return height_; }

@@ -6,6 +6,7 @@
 
 #include "sem/facet/facet_kernels.h"
 #include "sem/facet/facet_pass.h"
+#include "sem/facet/transposed_fits.h"
 #include "sem/model/engine_model.h"
 #include "sem/model/model_input.h"
 #include "slope_curve.h"
@@ -30,8 +31,7 @@ class SlopeEngine {
     options_.threads = resolve_threads(options.threads);
   }
 
-  struct Kept {};  // a fit at one scale takes as long as reading it
-  ModelImages predict(const Grid<double>& z_nm, Kept* = nullptr) const {
+  ModelImages predict(const Grid<double>& z_nm) const {
     ModelImages images = blank(z_nm);
     const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
     std::vector<Worker> workers(options_.threads);
@@ -52,39 +52,33 @@ class SlopeEngine {
     return images;
   }
 
-  Grid<double> gradient(const Grid<double>& z_nm, const ModelImages& weights, const Kept&) const {
+  Grid<double> gradient(const Grid<double>& z_nm, const ModelImages& weights) const {
     Grid<double> gradient(z_nm.width(), z_nm.height());
     double unit = 0;
     for (const Grid<double>& image : weights) unit = std::max(unit, magnitude(image.data()));
     if (unit == 0) return gradient;
     const int columns = pass_.columns();
-    const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
-    const std::size_t strips = (z_nm.width() + columns - 1) / columns;
     std::vector<Worker> workers(options_.threads);
-    pass_.transpose(
-        options_.edge, options_.threads,
-        [&](int w, int, const Block& column, T* out) {
-          std::fill_n(out, static_cast<std::size_t>(column.rows) * facet::coefficients * columns,
+    facet::TransposedFits<T> transposed(pass_, options_.edge, options_.threads);
+    transposed.add_all(
+        [&](int w, int, const Block& block, std::size_t, T* to) {
+          std::fill_n(to, static_cast<std::size_t>(block.rows) * facet::coefficients * columns,
                       T(0));
-          for (std::size_t i = column.x / columns; i < blocks.size(); i += strips) {
-            const Block& block = blocks[i];
-            const T* k = fit(z_nm, block, workers[w].scratch);
-            const double floor = pass_.floors(0, workers[w].scratch).slope;
-            measure(k, block, workers[w]);
-            T* to = out + static_cast<std::ptrdiff_t>(block.y) * facet::coefficients * columns;
-            for (int y = 0; y < block.rows;
-                 ++y, k += facet::coefficients * columns, to += facet::coefficients * columns) {
-              const SlopeRow row = workers[w].row(y, columns, block.width);
-              const std::vector<double*>& derivatives = derivatives_at(row, workers[w]);
-              for (int x = 0; x < block.width; ++x) {
-                // The mean of the one-sided derivatives of a length is 0.
-                if (row.tangent[x] <= floor) continue;
-                double sum = 0;
-                for (std::size_t c = 0; c < weights.size(); ++c)
-                  sum += weights[c](block.x + x, block.y + y) / unit * derivatives[c][x];
-                to[x] = T(sum * (k[x] / row.tangent[x]));
-                to[x + columns] = T(sum * (k[x + columns] / row.tangent[x]));
-              }
+          const T* k = fit(z_nm, block, workers[w].scratch);
+          const double floor = pass_.floors(0, workers[w].scratch).slope;
+          measure(k, block, workers[w]);
+          for (int y = 0; y < block.rows;
+               ++y, k += facet::coefficients * columns, to += facet::coefficients * columns) {
+            const SlopeRow row = workers[w].row(y, columns, block.width);
+            const std::vector<double*>& derivatives = derivatives_at(row, workers[w]);
+            for (int x = 0; x < block.width; ++x) {
+              // The mean of the one-sided derivatives of a length is 0.
+              if (row.tangent[x] <= floor) continue;
+              double sum = 0;
+              for (std::size_t c = 0; c < weights.size(); ++c)
+                sum += weights[c](block.x + x, block.y + y) / unit * derivatives[c][x];
+              to[x] = T(sum * (k[x] / row.tangent[x]));
+              to[x + columns] = T(sum * (k[x + columns] / row.tangent[x]));
             }
           }
         },
@@ -92,7 +86,7 @@ class SlopeEngine {
     return gradient;
   }
 
-  ModelImages change(const Grid<double>& z_nm, const Grid<double>& dz_nm, const Kept&) const {
+  ModelImages change(const Grid<double>& z_nm, const Grid<double>& dz_nm) const {
     ModelImages images = blank(z_nm);
     const double unit = magnitude(dz_nm.data());
     if (unit == 0) return images;

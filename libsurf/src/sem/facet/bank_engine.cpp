@@ -5,6 +5,7 @@
 
 #include "sem/model/model_input.h"
 #include "surf/core/parallel.h"
+#include "transposed_fits.h"
 
 namespace surf {
 
@@ -83,7 +84,7 @@ void BankEngine<T>::add(const Block& block, const AlignedVector<T>& sum, double 
 }
 
 template <class T>
-ModelImages BankEngine<T>::predict(const Grid<double>& z_nm, Kept* kept) const {
+ModelImages BankEngine<T>::predict(const Grid<double>& z_nm) const {
   ModelImages images = blank(z_nm, true);
   const int channels = static_cast<int>(images.size());
   const facet::CoarseFits<T> coarse = coarse_fits(z_nm);
@@ -92,8 +93,6 @@ ModelImages BankEngine<T>::predict(const Grid<double>& z_nm, Kept* kept) const {
     Scratch scratch;
     AlignedVector<T> sum;
   };
-  if (kept) kept->prepare(blocks, scales(), pass_.columns());
-  const bool keeps = kept && !kept->empty();
   std::vector<Worker> workers(options_.threads);
   parallel_for(
       blocks.size(), options_.threads,
@@ -103,9 +102,8 @@ ModelImages BankEngine<T>::predict(const Grid<double>& z_nm, Kept* kept) const {
         sum.assign(static_cast<std::size_t>(channels) * block.rows * pass_.columns(), T(0));
         pass_.load(z_nm, options_.edge, block, scratch.fine);
         for (int s = 0; s < scales(); ++s) {
-          const T* const k = fit(s, coarse, block, scratch);
-          pass_.loops().combine(k, block.rows, weights_[s].data(), channels, sum.data());
-          if (keeps) kept->keep(i, s, block.rows, pass_.columns(), k, floors(s, coarse, scratch));
+          pass_.loops().combine(fit(s, coarse, block, scratch), block.rows, weights_[s].data(),
+                                channels, sum.data());
         }
         add(block, sum, 1, images);
       },
@@ -113,58 +111,73 @@ ModelImages BankEngine<T>::predict(const Grid<double>& z_nm, Kept* kept) const {
   return images;
 }
 
+/// Takes a block's weights of the images, divided by `unit`, a power of two.
 template <class T>
-Grid<double> BankEngine<T>::gradient(const Grid<double>& z_nm, const ModelImages& weights,
-                                     const Kept& kept) const {
+void BankEngine<T>::take_weights(const ModelImages& weights, double unit, const Block& block,
+                                 AlignedVector<T>& out) const {
+  const int columns = pass_.columns();
+  out.resize(weights.size() * static_cast<std::size_t>(block.rows) * columns);
+  const double per_unit = 1 / unit;
+  T* to = out.data();
+  for (const Grid<double>& image : weights)
+    for (int y = 0; y < block.rows; ++y, to += columns) {
+      const double* const from = &image(block.x, block.y + y);
+      for (int x = 0; x < block.width; ++x) to[x] = T(from[x] * per_unit);
+      std::fill(to + block.width, to + columns, T(0));
+    }
+}
+
+/// Computes weights of a scale's coefficients at a block's pixels from those of the images.
+template <class T>
+void BankEngine<T>::pull_back(const Grid<double>& z_nm, const AlignedVector<T>& weights, int scale,
+                              const facet::CoarseFits<T>& coarse, const Block& block,
+                              Scratch& scratch, T* out) const {
+  if (fine_of_[scale] >= 0) pass_.load(z_nm, options_.edge, block, scratch.fine, fine_of_[scale]);
+  const T* const k = fit(scale, coarse, block, scratch);
+  pass_.loops().pull_back(k, block.rows, floors(scale, coarse, scratch), weights_[scale].data(),
+                          static_cast<int>(parameters_.channels.size()), weights.data(), out);
+}
+
+template <class T>
+Grid<double> BankEngine<T>::gradient(const Grid<double>& z_nm, const ModelImages& weights) const {
   Grid<double> gradient(z_nm.width(), z_nm.height());
   double unit = 0;
   for (const Grid<double>& image : weights) unit = std::max(unit, magnitude(image.data()));
   if (unit == 0) return gradient;
-  const int channels = static_cast<int>(weights.size()), columns = pass_.columns();
-  const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
-  const std::size_t strips = (z_nm.width() + columns - 1) / columns;
-  std::vector<AlignedVector<T>> block_weights(blocks.size());
-  parallel_for(blocks.size(), options_.threads, [&](std::size_t i, int) {
-    const Block& block = blocks[i];
-    block_weights[i].resize(static_cast<std::size_t>(channels) * block.rows * columns);
-    T* to = block_weights[i].data();
-    for (const Grid<double>& image : weights)
-      for (int y = 0; y < block.rows; ++y, to += columns)
-        for (int x = 0; x < block.width; ++x) to[x] = T(image(block.x + x, block.y + y) / unit);
-  });
   const facet::CoarseFits<T> coarse = coarse_fits(z_nm);
   std::vector<Scratch> workers(options_.threads);
-  const auto pull_back = [&](int w, int scale, const Block& column, T* out) {
-    for (std::size_t i = column.x / columns; i < blocks.size(); i += strips) {
-      const auto pull = [&](const T* k, const facet::Floors<T>& least) {
-        pass_.loops().pull_back(
-            k, blocks[i].rows, least, weights_[scale].data(), channels, block_weights[i].data(),
-            out + static_cast<std::ptrdiff_t>(blocks[i].y) * facet::coefficients * columns);
-      };
-      if (!kept.empty()) {
-        pull(kept.at(i, scale).coefficients.data(), kept.at(i, scale).floors);
-        continue;
-      }
-      Scratch& scratch = workers[w];
-      if (fine_of_[scale] >= 0)
-        pass_.load(z_nm, options_.edge, blocks[i], scratch.fine, fine_of_[scale]);
-      const T* const k = fit(scale, coarse, blocks[i], scratch);
-      pull(k, floors(scale, coarse, scratch));
-    }
-  };
-  pass_.transpose(
-      options_.edge, options_.threads,
-      [&](int w, int fine, const Block& column, T* out) {
-        pull_back(w, scale_of_[fine], column, out);
+  facet::TransposedFits<T> transposed(pass_, options_.edge, options_.threads);
+  std::vector<AlignedVector<T>> of_tile;
+  for (const facet::Tile& tile : transposed.tiles(z_nm.width(), z_nm.height())) {
+    of_tile.resize(std::max(of_tile.size(), tile.blocks.size()));
+    parallel_for(tile.blocks.size(), options_.threads, [&](std::size_t i, int) {
+      take_weights(weights, unit, tile.blocks[i], of_tile[i]);
+    });
+    transposed.add(
+        tile,
+        [&](int w, int fine, const Block& block, std::size_t i, T* out) {
+          pull_back(z_nm, of_tile[i], scale_of_[fine], coarse, block, workers[w], out);
+        },
+        unit, gradient);
+  }
+  const int columns = pass_.columns();
+  const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
+  const std::size_t strips = (z_nm.width() + columns - 1) / columns;
+  coarse.transpose(
+      [&](int w, int scale, const Block& column, T* out) {
+        for (std::size_t i = column.x / columns; i < blocks.size(); i += strips) {
+          Scratch& scratch = workers[w];
+          take_weights(weights, unit, blocks[i], scratch.weights);
+          pull_back(z_nm, scratch.weights, scale, coarse, blocks[i], scratch,
+                    out + static_cast<std::ptrdiff_t>(blocks[i].y) * facet::coefficients * columns);
+        }
       },
-      unit, gradient);
-  coarse.transpose(pull_back, columns, options_.edge, options_.threads, unit, gradient);
+      columns, options_.edge, options_.threads, unit, gradient);
   return gradient;
 }
 
 template <class T>
-ModelImages BankEngine<T>::change(const Grid<double>& z_nm, const Grid<double>& dz_nm,
-                                  const Kept& kept) const {
+ModelImages BankEngine<T>::change(const Grid<double>& z_nm, const Grid<double>& dz_nm) const {
   ModelImages images = blank(z_nm, false);
   const double unit = magnitude(dz_nm.data());
   if (unit == 0) return images;
@@ -182,14 +195,12 @@ ModelImages BankEngine<T>::change(const Grid<double>& z_nm, const Grid<double>& 
     const Block& block = blocks[i];
     auto& [at, along, sum] = workers[w];
     sum.assign(static_cast<std::size_t>(channels) * block.rows * pass_.columns(), T(0));
-    if (kept.empty()) pass_.load(z_nm, options_.edge, block, at.fine);
+    pass_.load(z_nm, options_.edge, block, at.fine);
     pass_.load(direction, options_.edge, block, along.fine);
     for (int s = 0; s < scales(); ++s) {
-      const T* const k =
-          kept.empty() ? fit(s, coarse, block, at) : kept.at(i, s).coefficients.data();
-      const facet::Floors<T> least = kept.empty() ? floors(s, coarse, at) : kept.at(i, s).floors;
-      pass_.loops().push_forward(k, fit(s, coarse_direction, block, along), block.rows, least,
-                                 weights_[s].data(), channels, sum.data());
+      const T* const k = fit(s, coarse, block, at);
+      pass_.loops().push_forward(k, fit(s, coarse_direction, block, along), block.rows,
+                                 floors(s, coarse, at), weights_[s].data(), channels, sum.data());
     }
     add(block, sum, unit, images);
   });

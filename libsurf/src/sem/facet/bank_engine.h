@@ -5,7 +5,6 @@
 
 #include "coarse_fits.h"
 #include "facet_pass.h"
-#include "kept_fits.h"
 #include "surf/sem/filter_bank.h"
 #include "surf/sem/image_model.h"
 
@@ -18,11 +17,9 @@ class BankEngine {
   BankEngine(const FilterBankParameters& parameters, double pitch_x_nm, double pitch_y_nm,
              const ModelOptions& options);
 
-  using Kept = facet::KeptFits<T>;
-  ModelImages predict(const Grid<double>& z_nm, Kept* kept = nullptr) const;
-  Grid<double> gradient(const Grid<double>& z_nm, const ModelImages& weights,
-                        const Kept& kept) const;
-  ModelImages change(const Grid<double>& z_nm, const Grid<double>& dz_nm, const Kept& kept) const;
+  ModelImages predict(const Grid<double>& z_nm) const;
+  Grid<double> gradient(const Grid<double>& z_nm, const ModelImages& weights) const;
+  ModelImages change(const Grid<double>& z_nm, const Grid<double>& dz_nm) const;
 
   std::vector<facet::Block> blocks(const Grid<double>& z_nm) const {
     return pass_.blocks(z_nm.width(), z_nm.height());
@@ -38,7 +35,7 @@ class BankEngine {
   /// A worker's memory for fits of a block at all scales, some of them on coarser heights.
   struct Scratch {
     typename facet::FacetPass<T>::Scratch fine;
-    AlignedVector<T> coarse, between;
+    AlignedVector<T> coarse, between, weights;
   };
   facet::CoarseFits<T> coarse_fits(const Grid<double>& z_nm) const;
   const T* fit(int scale, const facet::CoarseFits<T>& coarse, const facet::Block& block,
@@ -49,6 +46,11 @@ class BankEngine {
   ModelImages blank(const Grid<double>& z_nm, bool with_offset) const;
   void add(const facet::Block& block, const AlignedVector<T>& sum, double unit,
            ModelImages& images) const;
+  void take_weights(const ModelImages& weights, double unit, const facet::Block& block,
+                    AlignedVector<T>& out) const;
+  void pull_back(const Grid<double>& z_nm, const AlignedVector<T>& weights, int scale,
+                 const facet::CoarseFits<T>& coarse, const facet::Block& block, Scratch& scratch,
+                 T* out) const;
 
   const FilterBankParameters& parameters_;
   ModelOptions options_;

@@ -5,6 +5,7 @@
 
 #include "sem/model/border.h"
 #include "surf/core/parallel.h"
+#include "transposed_fits.h"
 
 namespace surf::facet {
 namespace {
@@ -252,14 +253,15 @@ void CoarseFits<T>::transpose_fit(int scale, const Source& source, int columns, 
       for (int j = 0; j < worths[strip].count; ++j) to[j] += *from++;
   }
   Grid<double> part(x.count, y.count);
-  pass.transpose(
-      Edge::flat, threads,
-      [&](int, int, const Block& column, T* out) {
-        const T* from = coarse.data() + column.x;
-        for (int i = 0; i < column.rows * coefficients;
+  TransposedFits<T> transposed(pass, Edge::flat, threads);
+  transposed.add_all(
+      [&](int, int, const Block& block, std::size_t, T* out) {
+        const T* from =
+            coarse.data() + static_cast<std::size_t>(block.y) * coefficients * x.count + block.x;
+        for (int i = 0; i < block.rows * coefficients;
              ++i, out += pass.columns(), from += x.count) {
           std::fill_n(out, pass.columns(), T(0));
-          std::copy_n(from, column.width, out);
+          std::copy_n(from, block.width, out);
         }
       },
       unit, part);

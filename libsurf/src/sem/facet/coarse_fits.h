@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "facet_pass.h"
@@ -33,9 +34,12 @@ class CoarseFits {
           T* coefficients) const;
   const Floors<T>& floors(int scale) const { return fits_[scale].floors; }
 
+  /// Writes, row by row, the weights of a scale's coefficients at the pixels of a column of pixels:
+  /// a block of the field's full height. Called from several threads.
+  using Source = std::function<void(int worker, int scale, const Block& column, T* weights)>;
+
   /// The transpose of `load` and `at` for all halved scales: adds `unit` times the result to
   /// `gradient`.
-  using Source = typename FacetPass<T>::Source;
   void transpose(const Source& source, int columns, Edge edge, int threads, double unit,
                  Grid<double>& gradient) const;
 

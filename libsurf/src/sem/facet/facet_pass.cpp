@@ -8,7 +8,6 @@
 
 #include "facet_kernels.h"
 #include "sem/model/border.h"
-#include "surf/core/parallel.h"
 
 namespace surf::facet {
 namespace {
@@ -153,99 +152,6 @@ Floors<T> FacetPass<T>::floors(int scale, const Scratch& s) const {
       std::numeric_limits<T>::epsilon() *
       loops_->largest(s.tile.data(), static_cast<std::ptrdiff_t>(s.tile.size()));
   return {T(rounding * kernels_[scale].slope_noise), T(rounding * kernels_[scale].curvature_noise)};
-}
-
-template <class T>
-void FacetPass<T>::scale_weights(const Scaling<T>& scaling, int height, T* row) const {
-  for (int y = 0; y < height; ++y, row += coefficients * columns())
-    for (int x = 0; x < columns(); ++x) {
-      row[3 * columns() + x] *= scaling.k5;
-      row[4 * columns() + x] *= scaling.k6;
-    }
-}
-
-/// Computes weights of moments at all pixels of a column from weights of coefficients. Weights of
-/// rows outside the field are added to the rows that continue it.
-template <class T>
-void FacetPass<T>::transpose_along(const Kernel& kernel, Edge edge, const Block& column,
-                                   const T* weights, T* planes, std::ptrdiff_t plane) const {
-  const int r = kernel.radius, height = column.rows;
-  const std::ptrdiff_t row_size = static_cast<std::ptrdiff_t>(coefficients) * columns();
-  std::vector<T*> rows(height + 2 * r);
-  T** const to = rows.data() + r;
-  for (int y = -r; y < height + r; ++y)
-    to[y] = planes + border_sample(y, height, edge) * moments * plane + column.x;
-  const Tap<T>* const taps = kernel.along.data();
-  loops_->along_transposed(weights, height, taps, 1, r, false, to, plane);
-  // Rows outside the field have no taps nearer than the field.
-  for (int out = 1; out <= r; out += 2) {
-    const int count = std::min(2, r + 1 - out);
-    for (const int y : {1 - out - count, height - 1 + out})
-      loops_->along_transposed(weights + y * row_size, count, taps, out, r, true, to + y, plane);
-  }
-}
-
-/// Adds the contribution of some rows' weights of moments to `sums`, beginning `radius_` columns
-/// left of the field; `turned` is memory for the transposed moments.
-template <class T>
-void FacetPass<T>::transpose_across(const Kernel& kernel, int width, const T* planes,
-                                    std::ptrdiff_t plane, AlignedVector<T>& turned, T* sums) const {
-  const int r = kernel.radius, wide = columns();
-  const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(moments) * wide,
-                       before = 2 * r * stride;
-  turned.resize(2 * before + (plane + 1) * stride);
-  std::fill_n(turned.begin(), before, T(0));
-  std::fill(turned.begin() + before + plane * stride, turned.end(), T(0));
-  for (int m = 0; m < moments; ++m)
-    loops_->turn(planes + m * plane, moments * plane, static_cast<int>(plane), stride,
-                 turned.data() + before + m * wide);
-  loops_->across_transposed(turned.data() + r * stride, width + 2 * r, kernel.across.data(), r,
-                            sums + std::ptrdiff_t{radius_ - r} * wide);
-}
-
-template <class T>
-void FacetPass<T>::transpose(Edge edge, int threads, const Source& source, double unit,
-                             Grid<double>& gradient) const {
-  const int width = gradient.width(), height = gradient.height(), wide = columns();
-  const int strips = (width + wide - 1) / wide, groups = (height + wide - 1) / wide;
-  // The moments of a row, one plane after the other; and transposed sums for as many rows as strips
-  // are wide. Parts outside the field are folded back at the end.
-  const std::ptrdiff_t plane = std::ptrdiff_t{strips} * wide;
-  const std::ptrdiff_t group_size = std::ptrdiff_t{wide} * moments * plane;
-  const std::ptrdiff_t sum_size = (std::ptrdiff_t{width} + 2 * radius_ + 1) * wide;
-  AlignedVector<T> planes(static_cast<std::size_t>(groups * group_size));
-  AlignedVector<T> sums(static_cast<std::size_t>(groups * sum_size));
-  threads = resolve_threads(threads);
-  std::vector<AlignedVector<T>> weights(threads), turned(threads);
-
-  for (int scale = 0; scale < scales(); ++scale) {
-    const Kernel& kernel = kernels_[scale];
-    const std::ptrdiff_t row_size = std::ptrdiff_t{coefficients} * wide,
-                         outside = 2 * kernel.radius * row_size;
-    parallel_for(strips, threads, [&](std::size_t strip, int w) {
-      const int x = static_cast<int>(strip) * wide;
-      const Block column{x, 0, std::min(wide, width - x), height};
-      weights[w].resize(static_cast<std::size_t>(height + 1) * row_size + 2 * outside);
-      T* const inside = weights[w].data() + outside;
-      std::fill_n(weights[w].begin(), outside, T(0));
-      std::fill_n(inside + height * row_size, outside + row_size, T(0));
-      source(w, scale, column, inside);
-      scale_weights(kernel.scaling, height, inside);
-      transpose_along(kernel, edge, column, inside, planes.data(), plane);
-    });
-    parallel_for(groups, threads, [&](std::size_t group, int w) {
-      transpose_across(kernel, width, planes.data() + group * group_size, plane, turned[w],
-                       sums.data() + group * sum_size);
-    });
-  }
-  parallel_for(groups, threads, [&](std::size_t group, int) {
-    const T* from = sums.data() + group * sum_size;
-    const int y = static_cast<int>(group) * wide, rows = std::min(wide, height - y);
-    for (int x = -radius_; x < width + radius_; ++x, from += wide) {
-      const int column = border_sample(x, width, edge);
-      for (int i = 0; i < rows; ++i) gradient(column, y + i) += unit * from[i];
-    }
-  });
 }
 
 template class FacetPass<float>;

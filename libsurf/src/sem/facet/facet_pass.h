@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <vector>
 
 #include "facet_operations.h"
@@ -28,6 +27,15 @@ class FacetPass {
  public:
   /// Throws InvalidInput for scales out of range.
   FacetPass(const std::vector<FacetScale>& scales, double pitch_x_nm, double pitch_y_nm);
+
+  struct Kernel {
+    int radius;
+    std::vector<Tap<T>> across, along;
+    Scaling<T> scaling;
+    double slope_noise, curvature_noise;  ///< sums of the magnitudes of all factors
+  };
+  const Kernel& kernel(int scale) const { return kernels_[scale]; }
+  int radius() const { return radius_; }  ///< the largest
 
   int scales() const { return static_cast<int>(kernels_.size()); }
   int columns() const { return loops_->columns; }
@@ -57,33 +65,12 @@ class FacetPass {
   /// block.
   Floors<T> floors(int scale, const Scratch& scratch) const;
 
-  /// Writes, row by row, the weights of a scale's coefficients at the pixels of a column of pixels:
-  /// a block of the field's full height. Called from several threads.
-  using Source = std::function<void(int worker, int scale, const Block& column, T* weights)>;
-
-  /// The transpose of the fits. Adds to `gradient` (of the size of the heights) `unit` times the
-  /// derivative by the heights of the sum of weight times coefficient over all pixels, coefficients
-  /// and scales.
-  void transpose(Edge edge, int threads, const Source& source, double unit,
-                 Grid<double>& gradient) const;
-
  private:
-  struct Kernel {
-    int radius;
-    std::vector<Tap<T>> across, along;
-    Scaling<T> scaling;
-    double slope_noise, curvature_noise;  ///< sums of the magnitudes of all factors
-  };
   void list_rows(int height, Edge edge, Scratch& scratch) const;
   void fill_tile(const Grid<double>& z_nm, Edge edge, Scratch& scratch) const;
-  void scale_weights(const Scaling<T>& scaling, int height, T* weights) const;
-  void transpose_along(const Kernel& kernel, Edge edge, const Block& column, const T* weights,
-                       T* planes, std::ptrdiff_t plane) const;
-  void transpose_across(const Kernel& kernel, int width, const T* planes, std::ptrdiff_t plane,
-                        AlignedVector<T>& turned, T* sums) const;
 
   std::vector<Kernel> kernels_;
-  int radius_ = 0;  ///< the largest radius
+  int radius_ = 0;
   const Operations<T>* loops_;
 };
 

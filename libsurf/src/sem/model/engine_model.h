@@ -16,9 +16,9 @@ namespace surf {
 ///     ModelOptions&, work)
 /// which gives work(engine), of an engine in the precision that the options ask for. Engines refer
 /// to the parameters and have
-///     ModelImages predict(z_nm, Kept* = nullptr), Grid<double> gradient(z_nm, weights, const
-///     Kept&), ModelImages change(z_nm, dz_nm, const Kept&)
-/// where Kept is what derivatives take over from the images that were made before.
+///     ModelImages predict(z_nm), Grid<double> gradient(z_nm, weights), ModelImages change(z_nm,
+///     dz_nm)
+/// Derivatives make again what they need of the images: reading it from memory takes as long.
 template <class Kind>
 class EngineLinearization final : public Linearization {
  public:
@@ -29,12 +29,7 @@ class EngineLinearization final : public Linearization {
       : parameters_(std::move(parameters)), options_(options), z_nm_(field.z_nm),
         pitch_x_nm_(field.pitch_x_nm), pitch_y_nm_(field.pitch_y_nm) {
     images_ = Kind::run(*parameters_, pitch_x_nm_, pitch_y_nm_, options_,
-                        [&]<class Engine>(const Engine& engine) {
-                          auto kept = std::make_shared<typename Engine::Kept>();
-                          ModelImages images = engine.predict(z_nm_, kept.get());
-                          kept_ = std::move(kept);
-                          return images;
-                        });
+                        [&](const auto& engine) { return engine.predict(z_nm_); });
     options_.watch = {};  // who watches may be gone when derivatives are asked for
   }
 
@@ -43,30 +38,19 @@ class EngineLinearization final : public Linearization {
   Grid<double> gradient(const ModelImages& weights) const override {
     check_weights(weights, images_.size(), z_nm_);
     return Kind::run(*parameters_, pitch_x_nm_, pitch_y_nm_, options_,
-                     [&]<class Engine>(const Engine& engine) {
-                       return engine.gradient(z_nm_, weights, kept<Engine>());
-                     });
+                     [&](const auto& engine) { return engine.gradient(z_nm_, weights); });
   }
 
   ModelImages change(const Grid<double>& dz_nm) const override {
     check_change(dz_nm, z_nm_);
     return Kind::run(*parameters_, pitch_x_nm_, pitch_y_nm_, options_,
-                     [&]<class Engine>(const Engine& engine) {
-                       return engine.change(z_nm_, dz_nm, kept<Engine>());
-                     });
+                     [&](const auto& engine) { return engine.change(z_nm_, dz_nm); });
   }
 
  private:
-  /// The options choose the same engine each time.
-  template <class Engine>
-  const typename Engine::Kept& kept() const {
-    return *static_cast<const typename Engine::Kept*>(kept_.get());
-  }
-
   std::shared_ptr<const Parameters> parameters_;
   ModelOptions options_;
   Grid<double> z_nm_;
-  std::shared_ptr<const void> kept_;
   double pitch_x_nm_, pitch_y_nm_;
   ModelImages images_;
 };

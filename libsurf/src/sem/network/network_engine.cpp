@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sem/facet/transposed_fits.h"
 #include "sem/model/border.h"
 #include "sem/model/model_input.h"
 #include "surf/core/parallel.h"
@@ -31,10 +32,19 @@ struct NetworkEngine<T>::Worker {
   AlignedVector<T> in, out, work, along_sky;
 };
 
+/// The derivatives at a block: by the coefficients of each scale, one after the other, and by the
+/// heights that the sky view of its pixels depends on, which reach beyond the block.
+template <class T>
+struct NetworkEngine<T>::Given {
+  T *coefficients, *sky;
+};
+
 template <class T>
 struct NetworkEngine<T>::Planes {
   SkyPlane<T> heights;
   std::vector<SkySample<T>> samples;
+  std::ptrdiff_t tile_stride;      // of the sky's derivatives of a block
+  std::vector<std::ptrdiff_t> to;  // places of the samples there
 };
 
 template <class T>
@@ -67,19 +77,25 @@ ModelImages NetworkEngine<T>::blank(const Grid<double>& z_nm) const {
 }
 
 template <class T>
+typename NetworkEngine<T>::Planes NetworkEngine<T>::planes(const Grid<double>& z_nm) const {
+  const int reach = view_.reach(), columns = pass_.columns();
+  Planes planes{{z_nm, z_nm(0, 0), 1, options_.edge, reach, columns}, {}, columns + 2 * reach, {}};
+  planes.samples = network::in_plane<T>(view_, planes.heights.stride);
+  for (const network::SkyView::Sample& s : view_.samples())
+    planes.to.push_back(s.dy * planes.tile_stride + s.dx);
+  return planes;
+}
+
+template <class T>
 void NetworkEngine<T>::take_inputs(const Grid<double>& z_nm, const Planes& planes,
-                                   const Block& block, Worker& worker, facet::KeptFits<T>* kept,
-                                   std::size_t number) const {
+                                   const Block& block, Worker& worker) const {
   const int columns = pass_.columns();
   const std::ptrdiff_t stride = std::ptrdiff_t{inputs_} * columns;
   worker.inputs.resize(static_cast<std::size_t>(block.rows * stride));
   pass_.load(z_nm, options_.edge, block, worker.scratch);
   T* out = worker.inputs.data();
-  for (int s = 0; s < pass_.scales(); ++s, out += network::facet_inputs * columns) {
-    const T* const k = pass_.fit(s, worker.scratch);
-    loops_->facets(k, block.rows, lengths_[s], out, stride);
-    if (kept) kept->keep(number, s, block.rows, columns, k, {});
-  }
+  for (int s = 0; s < pass_.scales(); ++s, out += network::facet_inputs * columns)
+    loops_->facets(pass_.fit(s, worker.scratch), block.rows, lengths_[s], out, stride);
   if (view_.bands() == 0) return;
   for (int y = 0; y < block.rows; ++y)
     loops_->sky(planes.heights.at(block.x, block.y + y), planes.samples.data(),
@@ -107,25 +123,16 @@ void NetworkEngine<T>::put(const Block& block, double unit, Worker& worker,
 }
 
 template <class T>
-ModelImages NetworkEngine<T>::predict(const Grid<double>& z_nm, Kept* kept) const {
+ModelImages NetworkEngine<T>::predict(const Grid<double>& z_nm) const {
   ModelImages images = blank(z_nm);
   const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
-  Planes planes{{z_nm, z_nm(0, 0), 1, options_.edge, view_.reach(), pass_.columns()}, {}};
-  planes.samples = network::in_plane<T>(view_, planes.heights.stride);
-  if (kept) {
-    const std::size_t bytes = static_cast<std::size_t>(z_nm.height()) * planes.heights.stride *
-                              static_cast<std::size_t>(inputs_) * sizeof(T);
-    kept->fits.prepare(blocks, pass_.scales(), pass_.columns(), bytes);
-    if (kept->fits.empty()) kept = nullptr;
-    else kept->inputs.resize(blocks.size());
-  }
+  const Planes planes = this->planes(z_nm);
   std::vector<Worker> workers(options_.threads);
   parallel_for(
       blocks.size(), options_.threads,
       [&](std::size_t i, int w) {
-        take_inputs(z_nm, planes, blocks[i], workers[w], kept ? &kept->fits : nullptr, i);
+        take_inputs(z_nm, planes, blocks[i], workers[w]);
         put(blocks[i], 1, workers[w], images);
-        if (kept) kept->inputs[i] = workers[w].inputs;
       },
       options_.watch);
   return images;
@@ -134,8 +141,7 @@ ModelImages NetworkEngine<T>::predict(const Grid<double>& z_nm, Kept* kept) cons
 template <class T>
 void NetworkEngine<T>::inputs(const Grid<double>& z_nm, const Sink& sink) const {
   const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
-  Planes planes{{z_nm, z_nm(0, 0), 1, options_.edge, view_.reach(), pass_.columns()}, {}};
-  planes.samples = network::in_plane<T>(view_, planes.heights.stride);
+  const Planes planes = this->planes(z_nm);
   std::vector<Worker> workers(options_.threads);
   parallel_for(blocks.size(), options_.threads, [&](std::size_t i, int w) {
     take_inputs(z_nm, planes, blocks[i], workers[w]);
@@ -143,102 +149,106 @@ void NetworkEngine<T>::inputs(const Grid<double>& z_nm, const Sink& sink) const 
   });
 }
 
+/// Computes the derivatives at a block from the weights of its pixels.
 template <class T>
-Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm, const ModelImages& weights,
-                                        const Kept& kept) const {
+void NetworkEngine<T>::pull_back(const Grid<double>& z_nm, const ModelImages& weights, double unit,
+                                 const Planes& planes, const Block& block, Worker& worker,
+                                 const Given& given) const {
+  const int columns = pass_.columns(), count = static_cast<int>(layers_.size());
+  const int reach = view_.reach();
+  const std::ptrdiff_t stride = std::ptrdiff_t{inputs_} * columns;
+  take_inputs(z_nm, planes, block, worker);
+  worker.values.resize(static_cast<std::size_t>(units_) * columns);
+  worker.slopes.resize(worker.values.size());
+  worker.work.resize(2 * static_cast<std::size_t>(widest_) * columns);
+  worker.along_sky.resize(planes.samples.size() * columns);
+  worker.out.assign(static_cast<std::size_t>(columns) * weights.size(), T(0));
+  std::fill_n(given.sky, planes.tile_stride * (block.rows + 2 * reach), T(0));
+  for (int y = 0; y < block.rows; ++y) {
+    for (std::size_t c = 0; c < weights.size(); ++c) {
+      const double scale = parameters_.channels[c].scale / unit;
+      const double* const from = &weights[c](block.x, block.y + y);
+      for (int x = 0; x < block.width; ++x) worker.out[c * columns + x] = T(from[x] * scale);
+    }
+    T* const inputs = worker.inputs.data() + y * stride;
+    loops_->forward(layers_.data(), count, inputs, worker.values.data(), worker.slopes.data());
+    // The inputs have done their work: their weights take their place.
+    loops_->backward(layers_.data(), count, worker.slopes.data(), worker.out.data(),
+                     worker.work.data(), inputs);
+    if (view_.bands() > 0)
+      loops_->sky_back(planes.heights.at(block.x, block.y + y), planes.samples.data(),
+                       static_cast<int>(planes.samples.size()), view_.bands(),
+                       inputs + pass_.scales() * network::facet_inputs * columns,
+                       given.sky + (y + reach) * planes.tile_stride + reach, planes.to.data(),
+                       worker.along_sky.data());
+  }
+  const std::ptrdiff_t size = std::ptrdiff_t{block.rows} * facet::coefficients * columns;
+  for (int s = 0; s < pass_.scales(); ++s)
+    loops_->facets_back(pass_.fit(s, worker.scratch), block.rows, lengths_[s],
+                        worker.inputs.data() + s * network::facet_inputs * columns, stride,
+                        given.coefficients + s * size);
+}
+
+template <class T>
+void NetworkEngine<T>::add_sky(const Block& block, const Given& given, double unit,
+                               Grid<double>& gradient) const {
+  const int reach = view_.reach();
+  const T* from = given.sky;
+  for (int y = -reach; y < block.rows + reach; ++y, from += pass_.columns() + 2 * reach) {
+    const int row = border_sample(block.y + y, gradient.height(), options_.edge);
+    // Beyond the block's width all values are 0, because their weights are 0.
+    add_continued(from, block.width + 2 * reach, block.x - reach, unit, options_.edge,
+                  &gradient(0, row), gradient.width());
+  }
+}
+
+template <class T>
+Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm,
+                                        const ModelImages& weights) const {
   Grid<double> gradient(z_nm.width(), z_nm.height());
   double unit = 0;
   for (std::size_t c = 0; c < weights.size(); ++c)
     unit = std::max(unit, magnitude(weights[c].data()) * parameters_.channels[c].scale);
   if (unit == 0) return gradient;
-
-  const int columns = pass_.columns(), count = static_cast<int>(layers_.size());
-  const std::ptrdiff_t stride = std::ptrdiff_t{inputs_} * columns;
-  const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
-  Planes planes{{z_nm, z_nm(0, 0), 1, options_.edge, view_.reach(), columns}, {}};
-  planes.samples = network::in_plane<T>(view_, planes.heights.stride);
-  // The sky view's derivatives of each block go to a tile of their own. The tiles are added in the
-  // order of the blocks, so that threads do not change the result.
-  const int reach = view_.reach();
-  const std::ptrdiff_t tile_stride = columns + 2 * reach;
-  std::vector<std::ptrdiff_t> to;
-  for (const network::SkyView::Sample& s : view_.samples()) to.push_back(s.dy * tile_stride + s.dx);
-  struct Given {
-    AlignedVector<T> inputs;  // weights of the inputs, [row][input][column]
-    AlignedVector<T> tile;
-  };
-  std::vector<Given> given(blocks.size());
+  const Planes planes = this->planes(z_nm);
+  facet::TransposedFits<T> transposed(pass_, options_.edge, options_.threads);
   std::vector<Worker> workers(options_.threads);
-  const int at_once = 8 * options_.threads;
-  for (std::size_t first = 0; first < blocks.size(); first += at_once) {
-    const std::size_t end = std::min(blocks.size(), first + at_once);
-    parallel_for(end - first, options_.threads, [&](std::size_t i, int w) {
-      const Block& block = blocks[first + i];
-      Given& mine = given[first + i];
-      Worker& worker = workers[w];
-      if (kept.inputs.empty()) take_inputs(z_nm, planes, block, worker);
-      const AlignedVector<T>& inputs = kept.inputs.empty() ? worker.inputs : kept.inputs[first + i];
-      worker.values.resize(static_cast<std::size_t>(units_) * columns);
-      worker.slopes.resize(worker.values.size());
-      worker.work.resize(2 * static_cast<std::size_t>(widest_) * columns);
-      worker.out.assign(static_cast<std::size_t>(columns) * weights.size(), T(0));
-      worker.along_sky.resize(2 * planes.samples.size() * columns);
-      mine.inputs.resize(static_cast<std::size_t>(block.rows * stride));
-      mine.tile.assign(static_cast<std::size_t>(tile_stride * (block.rows + 2 * reach)), T(0));
-      for (int y = 0; y < block.rows; ++y) {
-        for (std::size_t c = 0; c < weights.size(); ++c) {
-          const double scale = parameters_.channels[c].scale / unit;
-          for (int x = 0; x < block.width; ++x)
-            worker.out[c * columns + x] = T(weights[c](block.x + x, block.y + y) * scale);
-        }
-        T* const back = mine.inputs.data() + y * stride;
-        loops_->forward(layers_.data(), count, inputs.data() + y * stride, worker.values.data(),
-                        worker.slopes.data());
-        loops_->backward(layers_.data(), count, worker.slopes.data(), worker.out.data(),
-                         worker.work.data(), back);
-        if (view_.bands() > 0)
-          loops_->sky_back(planes.heights.at(block.x, block.y + y), planes.samples.data(),
-                           static_cast<int>(planes.samples.size()), view_.bands(),
-                           back + pass_.scales() * network::facet_inputs * columns,
-                           mine.tile.data() + (y + reach) * tile_stride + reach, to.data(),
-                           worker.along_sky.data());
-      }
+  AlignedVector<T> memory;
+  std::vector<Given> given;  // of a tile's blocks
+  const std::ptrdiff_t row_size =
+      std::ptrdiff_t{pass_.scales()} * facet::coefficients * pass_.columns();
+  for (const facet::Tile& tile : transposed.tiles(z_nm.width(), z_nm.height())) {
+    std::ptrdiff_t size = 0;
+    for (const Block& block : tile.blocks)
+      size += block.rows * row_size + (block.rows + 2 * view_.reach()) * planes.tile_stride;
+    memory.resize(std::max(memory.size(), static_cast<std::size_t>(size)));
+    given.clear();
+    T* at = memory.data();
+    for (const Block& block : tile.blocks) {
+      given.push_back({at, at + block.rows * row_size});
+      at = given.back().sky + (block.rows + 2 * view_.reach()) * planes.tile_stride;
+    }
+    parallel_for(tile.blocks.size(), options_.threads, [&](std::size_t i, int w) {
+      pull_back(z_nm, weights, unit, planes, tile.blocks[i], workers[w], given[i]);
     });
-    for (std::size_t i = first; i < end; ++i) {
-      const Block& block = blocks[i];
-      for (int y = -reach; y < block.rows + reach; ++y) {
-        const int row = border_sample(block.y + y, z_nm.height(), options_.edge);
-        const T* const from = given[i].tile.data() + (y + reach) * tile_stride + reach;
-        // Beyond the block's width all values are 0, because their weights are 0.
-        for (int x = -reach; x < columns + reach; ++x)
-          if (from[x] != 0)
-            gradient(border_sample(block.x + x, z_nm.width(), options_.edge), row) +=
-                unit * from[x];
-      }
-      given[i].tile = {};
-    }
+    // In the order of the blocks, so that threads do not change the result.
+    if (view_.bands() > 0)
+      for (std::size_t i = 0; i < tile.blocks.size(); ++i)
+        add_sky(tile.blocks[i], given[i], unit, gradient);
+    transposed.add(
+        tile,
+        [&](int, int scale, const Block& block, std::size_t i, T* out) {
+          const std::size_t size =
+              static_cast<std::size_t>(block.rows) * facet::coefficients * pass_.columns();
+          std::copy_n(given[i].coefficients + scale * size, size, out);
+        },
+        unit, gradient);
   }
-
-  const std::size_t strips = (z_nm.width() + columns - 1) / columns;
-  const auto source = [&](int w, int scale, const Block& column, T* out) {
-    Worker& worker = workers[w];
-    for (std::size_t i = column.x / columns; i < blocks.size(); i += strips) {
-      if (kept.inputs.empty()) pass_.load(z_nm, options_.edge, blocks[i], worker.scratch, scale);
-      loops_->facets_back(
-          kept.inputs.empty() ? pass_.fit(scale, worker.scratch)
-                              : kept.fits.at(i, scale).coefficients.data(),
-          blocks[i].rows, lengths_[scale],
-          given[i].inputs.data() + scale * network::facet_inputs * columns, stride,
-          out + static_cast<std::ptrdiff_t>(blocks[i].y) * facet::coefficients * columns);
-    }
-  };
-  pass_.transpose(options_.edge, options_.threads, source, unit, gradient);
   return gradient;
 }
 
 template <class T>
-ModelImages NetworkEngine<T>::change(const Grid<double>& z_nm, const Grid<double>& dz_nm,
-                                     const Kept& kept) const {
+ModelImages NetworkEngine<T>::change(const Grid<double>& z_nm, const Grid<double>& dz_nm) const {
   ModelImages images = blank(z_nm);
   const double unit = magnitude(dz_nm.data());
   if (unit == 0) return images;
@@ -248,22 +258,19 @@ ModelImages NetworkEngine<T>::change(const Grid<double>& z_nm, const Grid<double
   const int columns = pass_.columns(), count = static_cast<int>(layers_.size());
   const std::ptrdiff_t stride = std::ptrdiff_t{inputs_} * columns;
   const std::vector<Block> blocks = pass_.blocks(z_nm.width(), z_nm.height());
-  Planes planes{{z_nm, z_nm(0, 0), 1, options_.edge, view_.reach(), columns}, {}};
-  planes.samples = network::in_plane<T>(view_, planes.heights.stride);
+  const Planes planes = this->planes(z_nm);
   const SkyPlane<T> moved(direction, direction(0, 0), 1, options_.edge, view_.reach(), columns);
   std::vector<Worker> workers(options_.threads);
   parallel_for(blocks.size(), options_.threads, [&](std::size_t i, int w) {
     const Block& block = blocks[i];
     Worker& worker = workers[w];
-    if (kept.inputs.empty()) take_inputs(z_nm, planes, block, worker);
-    const AlignedVector<T>& inputs = kept.inputs.empty() ? worker.inputs : kept.inputs[i];
+    take_inputs(z_nm, planes, block, worker);
     pass_.load(direction, options_.edge, block, worker.along);
     worker.in.resize(static_cast<std::size_t>(block.rows * stride));
     for (int s = 0; s < pass_.scales(); ++s)
-      loops_->facets_change(kept.inputs.empty() ? pass_.fit(s, worker.scratch)
-                                                : kept.fits.at(i, s).coefficients.data(),
-                            pass_.fit(s, worker.along), block.rows, lengths_[s],
-                            worker.in.data() + s * network::facet_inputs * columns, stride);
+      loops_->facets_change(pass_.fit(s, worker.scratch), pass_.fit(s, worker.along), block.rows,
+                            lengths_[s], worker.in.data() + s * network::facet_inputs * columns,
+                            stride);
     worker.values.resize(static_cast<std::size_t>(units_) * columns);
     worker.slopes.resize(worker.values.size());
     worker.work.resize(2 * static_cast<std::size_t>(widest_) * columns);
@@ -274,8 +281,8 @@ ModelImages NetworkEngine<T>::change(const Grid<double>& z_nm, const Grid<double
         loops_->sky_change(planes.heights.at(block.x, block.y + y), moved.at(block.x, block.y + y),
                            planes.samples.data(), static_cast<int>(planes.samples.size()),
                            view_.bands(), in + pass_.scales() * network::facet_inputs * columns);
-      loops_->forward(layers_.data(), count, inputs.data() + y * stride, worker.values.data(),
-                      worker.slopes.data());
+      loops_->forward(layers_.data(), count, worker.inputs.data() + y * stride,
+                      worker.values.data(), worker.slopes.data());
       loops_->change(layers_.data(), count, worker.slopes.data(), in, worker.work.data(),
                      worker.out.data());
       for (std::size_t c = 0; c < images.size(); ++c)

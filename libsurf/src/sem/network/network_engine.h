@@ -6,7 +6,6 @@
 
 #include "network_operations.h"
 #include "sem/facet/facet_pass.h"
-#include "sem/facet/kept_fits.h"
 #include "sky_view.h"
 #include "surf/sem/facet_network.h"
 #include "surf/sem/image_model.h"
@@ -21,15 +20,9 @@ class NetworkEngine {
   NetworkEngine(const FacetNetworkParameters& parameters, double pitch_nm,
                 const ModelOptions& options);
 
-  /// What derivatives take over from the images: nothing where it would be too large.
-  struct Kept {
-    facet::KeptFits<T> fits;
-    std::vector<AlignedVector<T>> inputs;  ///< of the network, by block
-  };
-  ModelImages predict(const Grid<double>& z_nm, Kept* kept = nullptr) const;
-  Grid<double> gradient(const Grid<double>& z_nm, const ModelImages& weights,
-                        const Kept& kept) const;
-  ModelImages change(const Grid<double>& z_nm, const Grid<double>& dz_nm, const Kept& kept) const;
+  ModelImages predict(const Grid<double>& z_nm) const;
+  Grid<double> gradient(const Grid<double>& z_nm, const ModelImages& weights) const;
+  ModelImages change(const Grid<double>& z_nm, const Grid<double>& dz_nm) const;
 
   /// Receives the inputs of a block: row after row, each `columns` long. Called from several
   /// threads.
@@ -39,10 +32,16 @@ class NetworkEngine {
  private:
   struct Worker;
   struct Planes;
-  /// Into worker.inputs. `kept`: or null; of block number `number`.
+  struct Given;
+  Planes planes(const Grid<double>& z_nm) const;
+  /// Into worker.inputs.
   void take_inputs(const Grid<double>& z_nm, const Planes& planes, const facet::Block& block,
-                   Worker& worker, facet::KeptFits<T>* kept = nullptr,
-                   std::size_t number = 0) const;
+                   Worker& worker) const;
+  void pull_back(const Grid<double>& z_nm, const ModelImages& weights, double unit,
+                 const Planes& planes, const facet::Block& block, Worker& worker,
+                 const Given& given) const;
+  void add_sky(const facet::Block& block, const Given& given, double unit,
+               Grid<double>& gradient) const;
   void put(const facet::Block& block, double unit, Worker& worker, ModelImages& images) const;
   ModelImages blank(const Grid<double>& z_nm) const;
 

@@ -15,81 +15,125 @@ namespace surf::network::HWY_NAMESPACE {
 
 template <class T>
 struct Loops {
-  static constexpr int columns = 2 * SEMSURF_VECTOR_BYTES / static_cast<int>(sizeof(T));
-  static constexpr T hidden_sky = T(0.9);  // below 1, so that its logarithm has a derivative
+  typedef T V [[gnu::vector_size(SEMSURF_VECTOR_BYTES)]];
+  static constexpr int lanes = SEMSURF_VECTOR_BYTES / static_cast<int>(sizeof(T));
+  static constexpr int columns = 2 * lanes;
+  static constexpr T hidden_sky = T(0.9);  // below 1: a part of every direction stays visible
+  static constexpr int directions = 16;
+  static constexpr int most_in_direction = 32;  // samples; two in each of 12 bands are fewer
 
-  HWY_INLINE static T root(T x) {
-    if constexpr (sizeof(T) == sizeof(float)) return __builtin_sqrtf(x);
-    else return __builtin_sqrt(x);
+  HWY_INLINE static V load(const T* p) {
+    V v;
+    __builtin_memcpy(&v, p, sizeof v);
+    return v;
+  }
+  HWY_INLINE static void store(T* p, const V& v) { __builtin_memcpy(p, &v, sizeof v); }
+  HWY_INLINE static void increase(T* p, const V& v) { store(p, load(p) + v); }
+  HWY_INLINE static V positive(const V& x) { return x > T(0) ? x : V{}; }
+
+  /// 1 / sqrt(x), for finite x > 0 that are not denormal. In float, a step of third
+  /// order and one of second order from the bits of x: to 2e-7 of the result, in a third of the
+  /// time of a root and a division. Instructions that estimate it are as fast, but give different
+  /// bits on processors of different makers.
+  HWY_INLINE static V inverse_root(const V& x) {
+    if constexpr (sizeof(T) == sizeof(float)) {
+      typedef int Bits [[gnu::vector_size(SEMSURF_VECTOR_BYTES)]];
+      V y = (V)(0x5f3759df - ((Bits)x >> 1));  // to 3.5 %
+      V off = 1 - x * y * y;
+      y += y * off * (T(0.5) + T(0.375) * off);
+      off = 1 - x * y * y;
+      return y + T(0.5) * y * off;
+    } else {
+      V y;
+      for (int i = 0; i < lanes; ++i) y[i] = 1 / __builtin_sqrt(x[i]);
+      return y;
+    }
   }
 
-  /// max(x, 0) without a comparison, which would prevent vectorisation.
-  HWY_INLINE static T positive(T x) {
-    if constexpr (sizeof(T) == sizeof(float)) return T(0.5) * (x + __builtin_fabsf(x));
-    else return T(0.5) * (x + __builtin_fabs(x));
-  }
+  /// What follows from 1 + square, without a division.
+  struct Fourth {
+    V inverse;       // 1 / x
+    V root;          // x^(1/4)
+    V inverse_root;  // x^(-1/4)
+
+    HWY_INLINE explicit Fourth(const V& x) {
+      const V y = Loops::inverse_root(x), square_root = x * y;
+      inverse = y * y;
+      inverse_root = Loops::inverse_root(square_root);
+      root = square_root * inverse_root;
+    }
+    /// The derivative of c(v) = v / (1 + v^2)^(1/4), if x = 1 + v^2.
+    HWY_INLINE V slope(const V& v) const { return (1 + T(0.5) * v * v) * inverse * inverse_root; }
+    HWY_INLINE V cube() const { return inverse_root * inverse_root * inverse_root; }
+  };
+
+  /// The coefficients of some pixels at a scale.
+  struct Coefficients {
+    V k2, k3, k4, k5, k6;
+
+    HWY_INLINE explicit Coefficients(const T* k)
+        : k2(load(k)), k3(load(k + columns)), k4(load(k + 2 * columns)), k5(load(k + 3 * columns)),
+          k6(load(k + 4 * columns)) {}
+  };
 
   /// The quantities from which a scale's inputs at a pixel are computed.
   struct Facet {
-    T gg, r, mean, mean_r, split, difference, along, along_r;  // r: fourth roots of 1 + square
+    Fourth steep;
+    V mean, difference, mixed, along;
+    Fourth mean_root, split, along_root;
+
+    HWY_INLINE Facet(const Coefficients& k, T length)
+        : steep(1 + k.k2 * k.k2 + k.k3 * k.k3), mean((k.k6 + k.k4) * length),
+          difference((k.k6 - k.k4) * length), mixed(k.k5 * length),
+          along((k.k3 * k.k3 * k.k6 + k.k3 * k.k2 * k.k5 + k.k2 * k.k2 * k.k4) * length *
+                steep.inverse),
+          mean_root(1 + mean * mean), split(1 + difference * difference + mixed * mixed),
+          along_root(1 + along * along) {}
   };
-  HWY_INLINE static Facet facet(T k2, T k3, T k4, T k5, T k6, T length) {
-    Facet f;
-    f.gg = k2 * k2 + k3 * k3;
-    f.r = root(root(1 + f.gg));
-    f.mean = (k6 + k4) * length;
-    f.mean_r = root(root(1 + f.mean * f.mean));
-    f.difference = (k6 - k4) * length;
-    const T mixed = k5 * length;
-    f.split = root(root(1 + f.difference * f.difference + mixed * mixed));
-    f.along = (k3 * k3 * k6 + k3 * k2 * k5 + k2 * k2 * k4) * length / (1 + f.gg);
-    f.along_r = root(root(1 + f.along * f.along));
-    return f;
-  }
-  /// The derivative of c(x) = x / r, r = (1 + x^2)^(1/4).
-  HWY_INLINE static T slope(T x, T r) { return (1 + T(0.5) * x * x) / ((1 + x * x) * r); }
 
   HWY_INLINE static void facets(const T* k, int rows, T length, T* out, std::ptrdiff_t stride) {
     for (int y = 0; y < rows; ++y, k += facet::coefficients * columns, out += stride)
-      for (int x = 0; x < columns; ++x) {
-        const Facet f = facet(k[x], k[columns + x], k[2 * columns + x], k[3 * columns + x],
-                              k[4 * columns + x], length);
-        out[x] = f.r - 1;
-        out[columns + x] = f.mean / f.mean_r;
-        out[2 * columns + x] = f.split - 1;
-        out[3 * columns + x] = f.along / f.along_r;
+      for (int x = 0; x < columns; x += lanes) {
+        const Facet f(Coefficients(k + x), length);
+        store(out + x, f.steep.root - 1);
+        store(out + columns + x, f.mean * f.mean_root.inverse_root);
+        store(out + 2 * columns + x, f.split.root - 1);
+        store(out + 3 * columns + x, f.along * f.along_root.inverse_root);
       }
   }
 
-  /// Derivatives of the four inputs by the quantities in Facet: |g|^2, trace, and the two parts of
-  /// the difference.
+  /// Derivatives of the four inputs by |g|^2, trace, the two parts of the difference, and the
+  /// curvature along the slope.
   struct Slopes {
-    T gg, mean, difference, mixed, along;
+    V steep, mean, difference, mixed, along;
+
+    HWY_INLINE explicit Slopes(const Facet& f)
+        : steep(T(0.25) * f.steep.cube()), mean(f.mean_root.slope(f.mean)),
+          along(f.along_root.slope(f.along)) {
+      const V half = T(0.5) * f.split.cube();
+      difference = half * f.difference;
+      mixed = half * f.mixed;
+    }
   };
-  HWY_INLINE static Slopes slopes(const Facet& f, T mixed) {
-    const T split3 = f.split * f.split * f.split;
-    return {T(0.25) / (f.r * f.r * f.r), slope(f.mean, f.mean_r), T(0.5) * f.difference / split3,
-            T(0.5) * mixed / split3, slope(f.along, f.along_r)};
-  }
 
   HWY_INLINE static void facets_back(const T* k, int rows, T length, const T* weight,
                                      std::ptrdiff_t stride, T* out) {
     for (int y = 0; y < rows; ++y, k += facet::coefficients * columns, weight += stride,
              out += facet::coefficients * columns)
-      for (int x = 0; x < columns; ++x) {
-        const T k2 = k[x], k3 = k[columns + x], k4 = k[2 * columns + x], k5 = k[3 * columns + x],
-                k6 = k[4 * columns + x];
-        const Facet f = facet(k2, k3, k4, k5, k6, length);
-        const Slopes s = slopes(f, k5 * length);
-        const T mean = weight[columns + x] * s.mean * length;
-        const T difference = weight[2 * columns + x] * s.difference * length;
-        const T along = weight[3 * columns + x] * s.along / (1 + f.gg);
-        const T gg = 2 * (weight[x] * s.gg - along * f.along), quadratic = along * length;
-        out[x] = gg * k2 + quadratic * (k3 * k5 + 2 * k2 * k4);
-        out[columns + x] = gg * k3 + quadratic * (k2 * k5 + 2 * k3 * k6);
-        out[2 * columns + x] = mean - difference + quadratic * k2 * k2;
-        out[3 * columns + x] = weight[2 * columns + x] * s.mixed * length + quadratic * k3 * k2;
-        out[4 * columns + x] = mean + difference + quadratic * k3 * k3;
+      for (int x = 0; x < columns; x += lanes) {
+        const Coefficients c(k + x);
+        const Facet f(c, length);
+        const Slopes s(f);
+        const V split = load(weight + 2 * columns + x) * length;
+        const V mean = load(weight + columns + x) * s.mean * length,
+                difference = split * s.difference;
+        const V along = load(weight + 3 * columns + x) * s.along * f.steep.inverse;
+        const V gg = 2 * (load(weight + x) * s.steep - along * f.along), quadratic = along * length;
+        store(out + x, gg * c.k2 + quadratic * (c.k3 * c.k5 + 2 * c.k2 * c.k4));
+        store(out + columns + x, gg * c.k3 + quadratic * (c.k2 * c.k5 + 2 * c.k3 * c.k6));
+        store(out + 2 * columns + x, mean - difference + quadratic * c.k2 * c.k2);
+        store(out + 3 * columns + x, split * s.mixed + quadratic * c.k3 * c.k2);
+        store(out + 4 * columns + x, mean + difference + quadratic * c.k3 * c.k3);
       }
   }
 
@@ -97,141 +141,149 @@ struct Loops {
                                        std::ptrdiff_t stride) {
     for (int y = 0; y < rows; ++y, k += facet::coefficients * columns,
              dk += facet::coefficients * columns, out += stride)
-      for (int x = 0; x < columns; ++x) {
-        const T k2 = k[x], k3 = k[columns + x], k4 = k[2 * columns + x], k5 = k[3 * columns + x],
-                k6 = k[4 * columns + x];
-        const T d2 = dk[x], d3 = dk[columns + x], d4 = dk[2 * columns + x],
-                d5 = dk[3 * columns + x], d6 = dk[4 * columns + x];
-        const Facet f = facet(k2, k3, k4, k5, k6, length);
-        const Slopes s = slopes(f, k5 * length);
-        const T dgg = 2 * (k2 * d2 + k3 * d3);
-        const T quadratic = d3 * (k2 * k5 + 2 * k3 * k6) + d2 * (k3 * k5 + 2 * k2 * k4) +
-                            k3 * k3 * d6 + k3 * k2 * d5 + k2 * k2 * d4;
-        out[x] = s.gg * dgg;
-        out[columns + x] = s.mean * length * (d6 + d4);
-        out[2 * columns + x] = length * (s.difference * (d6 - d4) + s.mixed * d5);
-        out[3 * columns + x] = s.along * (length * quadratic - f.along * dgg) / (1 + f.gg);
+      for (int x = 0; x < columns; x += lanes) {
+        const Coefficients c(k + x), d(dk + x);
+        const Facet f(c, length);
+        const Slopes s(f);
+        const V dgg = 2 * (c.k2 * d.k2 + c.k3 * d.k3);
+        const V quadratic = d.k3 * (c.k2 * c.k5 + 2 * c.k3 * c.k6) +
+                            d.k2 * (c.k3 * c.k5 + 2 * c.k2 * c.k4) + c.k3 * c.k3 * d.k6 +
+                            c.k3 * c.k2 * d.k5 + c.k2 * c.k2 * d.k4;
+        store(out + x, s.steep * dgg);
+        store(out + columns + x, s.mean * length * (d.k6 + d.k4));
+        store(out + 2 * columns + x, length * (s.difference * (d.k6 - d.k4) + s.mixed * d.k5));
+        store(out + 3 * columns + x,
+              s.along * (length * quadratic - f.along * dgg) * f.steep.inverse);
       }
   }
 
+  /// How some pixels see a sample.
+  struct Sight {
+    V sine;  // of its elevation
+    V rate;  // the derivative of the sine by the height
+
+    HWY_INLINE Sight(const V& near, const T* far, const SkySample<T>& sample) {
+      const V rise = load(far) - near, r = inverse_root(rise * rise + sample.square);
+      sine = rise * r;
+      rate = sample.square * r * r * r;
+    }
+    /// The part of `seen` that the sample leaves open.
+    HWY_INLINE V left(const V& seen) const {
+      return sine > T(0) ? seen - hidden_sky * (sine * sine * seen) : seen;
+    }
+  };
+
   HWY_INLINE static void sky(const T* z, const SkySample<T>* samples, int count, int bands,
                              T* out) {
-    for (int i = 0; i < (2 * bands + 1) * columns; ++i) out[i] = 0;
-    T* const open = out + 2 * bands * columns;
-    T seen[columns];
-    for (int x = 0; x < columns; ++x) seen[x] = T(1) / 16;
-    for (int i = 0; i < count; ++i) {
-      const SkySample<T>& a = samples[i];
-      const T* const far = z + a.offset;
-      T *const mean = out + 2 * a.band * columns, *const square = mean + columns;
-      for (int x = 0; x < columns; ++x) {
-        const T e = (far[x] - z[x]) * a.per_distance, s = e / root(1 + e * e), up = positive(s);
-        mean[x] += a.weight * s;
-        square[x] += a.weight * s * s;
-        seen[x] *= 1 - hidden_sky * up * up;
+    for (int i = 0; i < (2 * bands + 1) * columns; i += lanes) store(out + i, V{});
+    const V near[2] = {load(z), load(z + lanes)};
+    V open[2] = {};
+    for (int i = 0; i < count;) {
+      V seen[2] = {V{} + T(1) / directions, V{} + T(1) / directions};
+      for (bool last = false; !last;) {
+        V sum[2] = {}, squares[2] = {};  // of the direction's samples in a band
+        for (bool ends = false; !ends; ++i) {
+          ends = samples[i].ends_band;
+          last = samples[i].last;
+          for (int v = 0; v < 2; ++v) {
+            const Sight sight(near[v], z + v * lanes + samples[i].offset, samples[i]);
+            sum[v] += sight.sine;
+            squares[v] += sight.sine * sight.sine;
+            seen[v] = sight.left(seen[v]);
+          }
+        }
+        const SkySample<T>& a = samples[i - 1];
+        T* const mean = out + 2 * a.band * columns;
+        for (int v = 0; v < 2; ++v) {
+          increase(mean + v * lanes, a.weight * sum[v]);
+          increase(mean + columns + v * lanes, a.weight * squares[v]);
+        }
       }
-      if (!a.last) continue;
-      for (int x = 0; x < columns; ++x) {
-        open[x] += seen[x];
-        seen[x] = T(1) / 16;
-      }
+      for (int v = 0; v < 2; ++v) open[v] += seen[v];
     }
+    for (int v = 0; v < 2; ++v) store(out + 2 * bands * columns + v * lanes, open[v]);
   }
 
   HWY_INLINE static void sky_back(const T* z, const SkySample<T>* samples, int count, int bands,
                                   const T* weight, T* dz, const std::ptrdiff_t* to, T* work) {
     const T* const open = weight + 2 * bands * columns;
-    T* const kept = work + count * columns;  // roots of the direction at hand
-    for (int first = 0; first < count;) {
-      T seen[columns];
-      for (int x = 0; x < columns; ++x) seen[x] = open[x] / 16;
-      int end = first;
-      for (bool last = false; !last; ++end) {
-        const SkySample<T>& a = samples[end];
-        last = a.last;
-        const T* const far = z + a.offset;
-        T *const sines = work + end * columns, *const roots = kept + (end - first) * columns;
-        for (int x = 0; x < columns; ++x) {
-          const T e = (far[x] - z[x]) * a.per_distance, r = 1 / root(1 + e * e), s = e * r,
-                  up = positive(s);
-          seen[x] *= 1 - hidden_sky * up * up;
-          sines[x] = s;
-          roots[x] = r;
+    V own[2] = {};
+    for (int first = 0, end = 0; first < count; first = end) {
+      while (!samples[end++].last) {
+      }
+      for (int v = 0; v < 2; ++v) {
+        const int x = v * lanes;
+        const V near = load(z + x);
+        // The sky left open by the samples before and behind: the product without the sample
+        // itself, without a division.
+        V sine[most_in_direction], rate[most_in_direction], before[most_in_direction];
+        V seen = load(open + x) * (T(1) / directions);
+        for (int i = first; i < end; ++i) {
+          const Sight sight(near, z + x + samples[i].offset, samples[i]);
+          sine[i - first] = sight.sine;
+          rate[i - first] = sight.rate;
+          before[i - first] = seen;
+          seen = sight.left(seen);
+        }
+        V behind = V{} + T(1);
+        for (int i = end - 1; i >= first; --i) {
+          const V s = sine[i - first], up = positive(s) * hidden_sky;
+          const T* const mean = weight + 2 * samples[i].band * columns + x;
+          const V by_sine = samples[i].weight * (load(mean) + 2 * s * load(mean + columns)) -
+                            2 * up * (before[i - first] * behind);
+          behind -= behind * up * s;
+          const V change = by_sine * rate[i - first];
+          store(work + i * columns + x, change);
+          own[v] += change;
         }
       }
-      for (int i = first; i < end; ++i) {
-        const SkySample<T>& a = samples[i];
-        const T* const roots = kept + (i - first) * columns;
-        const T *const mean = weight + 2 * a.band * columns, *const square = mean + columns;
-        T* const change = work + i * columns;
-        for (int x = 0; x < columns; ++x) {
-          const T s = change[x], r = roots[x], up = positive(s);
-          const T ds = a.weight * (mean[x] + 2 * s * square[x]) -
-                       seen[x] * 2 * hidden_sky * up / (1 - hidden_sky * up * up);
-          change[x] = ds * r * r * r * a.per_distance;
-        }
-      }
-      first = end;
     }
     // Samples of one direction lie in few rows and overlap, so that an addition would wait for the
     // one before. Therefore one sample of each direction is handled after the other.
-    const int apart = count / 16;
+    const int apart = count / directions;
     for (int start = 0; start < apart; ++start)
-      for (int i = start; i < count; i += apart) {
-        const T* const change = work + i * columns;
-        T* const out = dz + to[i];
-        for (int x = 0; x < columns; ++x) out[x] += change[x];
-      }
-    for (int x = 0; x < columns; ++x) {
-      T sum = 0;
-      for (int i = 0; i < count; ++i) sum += work[i * columns + x];
-      dz[x] -= sum;
-    }
+      for (int i = start; i < count; i += apart)
+        for (int x = 0; x < columns; x += lanes)
+          increase(dz + to[i] + x, load(work + i * columns + x));
+    for (int v = 0; v < 2; ++v) increase(dz + v * lanes, -own[v]);
   }
 
   HWY_INLINE static void sky_change(const T* z, const T* dz, const SkySample<T>* samples, int count,
                                     int bands, T* out) {
-    for (int i = 0; i < (2 * bands + 1) * columns; ++i) out[i] = 0;
-    T* const open = out + 2 * bands * columns;
-    T seen[columns], rate[columns];  // rate: derivative of the logarithm of seen
-    for (int x = 0; x < columns; ++x) seen[x] = T(1) / 16, rate[x] = 0;
-    for (int i = 0; i < count; ++i) {
-      const SkySample<T>& a = samples[i];
-      const T *const far = z + a.offset, *const dfar = dz + a.offset;
-      T *const mean = out + 2 * a.band * columns, *const square = mean + columns;
-      for (int x = 0; x < columns; ++x) {
-        const T e = (far[x] - z[x]) * a.per_distance, r = 1 / root(1 + e * e), s = e * r,
-                up = positive(s);
-        const T ds = (dfar[x] - dz[x]) * a.per_distance * r * r * r,
-                left = 1 - hidden_sky * up * up;
-        mean[x] += a.weight * ds;
-        square[x] += a.weight * 2 * s * ds;
-        seen[x] *= left;
-        rate[x] -= 2 * hidden_sky * up * ds / left;
+    for (int i = 0; i < (2 * bands + 1) * columns; i += lanes) store(out + i, V{});
+    for (int x = 0; x < columns; x += lanes)
+      for (int i = 0; i < count;) {
+        V seen = V{} + T(1) / directions, change = {};  // of seen
+        for (bool last = false; !last; ++i) {
+          const SkySample<T>& a = samples[i];
+          last = a.last;
+          const Sight sight(load(z + x), z + x + a.offset, a);
+          const V ds = (load(dz + x + a.offset) - load(dz + x)) * sight.rate;
+          T* const mean = out + 2 * a.band * columns + x;
+          increase(mean, a.weight * ds);
+          increase(mean + columns, a.weight * 2 * sight.sine * ds);
+          change = sight.left(change) - 2 * hidden_sky * positive(sight.sine) * ds * seen;
+          seen = sight.left(seen);
+        }
+        increase(out + 2 * bands * columns + x, change);
       }
-      if (!a.last) continue;
-      for (int x = 0; x < columns; ++x) {
-        open[x] += seen[x] * rate[x];
-        seen[x] = T(1) / 16;
-        rate[x] = 0;
-      }
-    }
+  }
+
+  HWY_INLINE static T root(T x) {
+    if constexpr (sizeof(T) == sizeof(float)) return __builtin_sqrtf(x);
+    else return __builtin_sqrt(x);
   }
 
   /// sums[o] = start + sum over i of matrix[o * row + i * column] * in[i], for four outputs at a
   /// time, which share the loaded values.
   HWY_INLINE static void multiply(const T* matrix, std::ptrdiff_t row, std::ptrdiff_t column,
                                   const T* start, int inputs, int outputs, const T* in, T* out) {
-    typedef T V [[gnu::vector_size(SEMSURF_VECTOR_BYTES)]];
-    constexpr int lanes = columns / 2;
     int o = 0;
     for (; o + 4 <= outputs; o += 4) {
       V sum[4][2];
       for (int j = 0; j < 4; ++j) sum[j][0] = sum[j][1] = V{} + (start ? start[o + j] : T(0));
       for (int i = 0; i < inputs; ++i) {
-        V a, b;
-        __builtin_memcpy(&a, in + i * columns, sizeof a);
-        __builtin_memcpy(&b, in + i * columns + lanes, sizeof b);
+        const V a = load(in + i * columns), b = load(in + i * columns + lanes);
         for (int j = 0; j < 4; ++j) {
           const T w = matrix[(o + j) * row + i * column];
           sum[j][0] += a * w;
@@ -239,8 +291,8 @@ struct Loops {
         }
       }
       for (int j = 0; j < 4; ++j) {
-        __builtin_memcpy(out + (o + j) * columns, &sum[j][0], sizeof(V));
-        __builtin_memcpy(out + (o + j) * columns + lanes, &sum[j][1], sizeof(V));
+        store(out + (o + j) * columns, sum[j][0]);
+        store(out + (o + j) * columns + lanes, sum[j][1]);
       }
     }
     for (; o < outputs; ++o) {
@@ -261,10 +313,10 @@ struct Loops {
                values);
       const int n = layer.outputs * columns;
       if (l + 1 < count)
-        for (int i = 0; i < n; ++i) {
-          const T r = 1 / root(1 + values[i] * values[i]);
-          values[i] *= r;
-          slopes[i] = r * r * r;
+        for (int i = 0; i < n; i += lanes) {
+          const V v = load(values + i), r = inverse_root(1 + v * v);
+          store(values + i, v * r);
+          store(slopes + i, r * r * r);
         }
       else
         for (int i = 0; i < n; ++i) {

@@ -22,10 +22,11 @@ struct Layer {
 template <class T>
 struct SkySample {
   std::ptrdiff_t offset;
-  T per_distance;  ///< 1 / nm
+  T square;  ///< of the distance, nm^2
   T weight;
   int band;
-  bool last;  ///< the last sample of its direction
+  bool ends_band;  ///< the last sample of its direction in the band
+  bool last;       ///< the last sample of its direction
 };
 
 /// The inner loops. Rows of inputs, outputs and weights store their numbers one after the other,
@@ -45,8 +46,8 @@ struct Operations {
   /// Computes the sky inputs of a row from the heights `z` at its first pixel: mean and mean square
   /// of each band, then the visible sky.
   void (*sky)(const T* z, const SkySample<T>* samples, int count, int bands, T* out);
-  /// Adds the weights of the heights to `dz`, where sample i lies at to[i]; `work` holds two
-  /// rows for each sample.
+  /// Adds the weights of the heights to `dz`, where sample i lies at to[i]; `work` holds a
+  /// row for each sample.
   void (*sky_back)(const T* z, const SkySample<T>* samples, int count, int bands, const T* weight,
                    T* dz, const std::ptrdiff_t* to, T* work);
   void (*sky_change)(const T* z, const T* dz, const SkySample<T>* samples, int count, int bands,

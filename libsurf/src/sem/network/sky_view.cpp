@@ -76,8 +76,11 @@ SkyPlane<T>::SkyPlane(const Grid<double>& z_nm, double level, double unit, Edge 
 template <class T>
 std::vector<SkySample<T>> in_plane(const SkyView& view, std::ptrdiff_t stride) {
   std::vector<SkySample<T>> samples;
-  for (const SkyView::Sample& s : view.samples())
-    samples.push_back({s.dy * stride + s.dx, T(1 / s.distance_nm), T(s.weight), s.band, s.last});
+  for (const SkyView::Sample& s : view.samples()) {
+    if (!samples.empty() && samples.back().band != s.band) samples.back().ends_band = true;
+    samples.push_back({s.dy * stride + s.dx, T(s.distance_nm * s.distance_nm), T(s.weight), s.band,
+                       s.last, s.last});
+  }
   return samples;
 }
 

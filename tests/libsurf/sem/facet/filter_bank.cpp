@@ -129,6 +129,16 @@ TEST(FilterBank, GradientIsTheTransposeOnTallAndWideFields) {
 
 // Where roots are zero the one-sided derivatives differ: their mean is what central differences
 // give.
+TEST(FilterBank, GradientIsTheTransposeWhereTilesMeet) {
+  for (const bool multi_resolution : {false, true})
+    for (const Edge edge : edges) {
+      const auto model = bank(multi_resolution);
+      expect_adjoint(*model, rough_field(530, 90), edge, 1e-12);
+      expect_adjoint(*model, rough_field(90, 700), edge, 1e-12);
+      expect_adjoint(*model, rough_field(560, 650), edge, 1e-12);
+    }
+}
+
 TEST(FilterBank, LinearizationIsFiniteAndTheMeanOfBothSidesWhereRootsAreZero) {
   const HeightField flat = sampled(40, 40, 2, [](int, int) { return 7.0; });
   const HeightField plane = sampled(40, 40, 2, [](int x, int y) { return 0.25 * x - 0.5 * y; });

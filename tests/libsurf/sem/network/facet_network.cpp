@@ -170,6 +170,37 @@ TEST(FacetNetwork, FloatIsAsGoodAsDouble) {
   EXPECT_LT(largest_difference(fast->gradient(w), g), 5e-4 * largest(g));
 }
 
+TEST(FacetNetwork, RootsAreAsGoodAsSinglePrecision) {
+  // The sky view alone: fits in single precision are not as good.
+  const HeightField field = rough_field(40, 30, 2, 60);
+  FacetNetworkParameters p = some_network({});
+  p.scales = {{5, 0.6}};
+  DenseLayer& layer = p.layers[0];
+  layer.inputs = network_inputs(p);
+  layer.outputs = 1;
+  layer.biases.assign(1, 0.0);
+  p.channels = {{"input", 1}};
+  for (int i = 4; i < layer.inputs; ++i) {
+    layer.weights.assign(layer.inputs, 0.0);
+    layer.weights[i] = 1;
+    const auto model = network(p);
+    EXPECT_LT(largest_difference(model->predict(field)[0],
+                                 model->predict(field, {.double_precision = true})[0]),
+              2e-6)
+        << i;
+  }
+}
+
+TEST(FacetNetwork, GradientIsTheTransposeWhereTilesMeet) {
+  const HeightField field = rough_field(610, 530);
+  for (const Edge edge : all_edges) expect_adjoint(*network(), field, edge, 1e-12);
+  const auto fast = network()->linearize(field),
+             exact = network()->linearize(field, {.double_precision = true});
+  const ModelImages w = random_weights(field, 2);
+  const Grid<double> g = exact->gradient(w);
+  EXPECT_LT(largest_difference(fast->gradient(w), g), 5e-4 * largest(g));
+}
+
 TEST(FacetNetwork, LinearizationIsExact) {
   const HeightField flat = sampled(30, 30, 2, [](int, int) { return 7.0; });
   const HeightField plane = sampled(30, 30, 2, [](int x, int y) { return 0.25 * x - 0.5 * y; });
