@@ -41,14 +41,17 @@ void advise(const RepairSummary& summary) {
 }
 
 void print_simplified(const SimplifySummary& s) {
-  print("{:<10} {} triangles to {}, {}\n", "simplify", s.triangles_before, s.triangles_after,
-        s.attempts == 0 || s.triangles_after == s.triangles_before
-            ? "nothing could be removed"
-            : fmt::format("at most {} apart (original to result {}, back {}), measured every {}",
-                          format_length(s.deviation.largest_nm()),
-                          format_length(s.deviation.from_first_nm),
-                          format_length(s.deviation.from_second_nm),
-                          format_length(s.deviation.spacing_nm)));
+  std::string how;
+  if (s.end == SimplifyEnd::not_proven)
+    how = "not proven: nothing simpler could be shown to keep the tolerance";
+  else if (s.triangles_after == s.triangles_before) how = "nothing could be removed";
+  else if (!s.deviation.proven()) how = "how far apart is not proven: coordinates are too large";
+  else
+    how = fmt::format("at most {} apart (original to result {}, back {}), proven",
+                      format_length(s.deviation.largest_nm()),
+                      format_length(s.deviation.from_first_nm),
+                      format_length(s.deviation.from_second_nm));
+  print("{:<10} {} triangles to {}, {}\n", "simplify", s.triangles_before, s.triangles_after, how);
 }
 
 std::string unique_name(const SurfaceScene& scene, const std::string& name) {

@@ -68,6 +68,8 @@ int vtkSemsurfSimplifyMesh::RequestData(vtkInformation*, vtkInformationVector** 
       pv::warn(this,
                fmt::format("Triangles: {} are left; fewer would {}", summary.triangles_after,
                            options.tolerance_nm > 0 ? "exceed Mesh Tolerance" : "turn faces over"));
+    if (summary.end == SimplifyEnd::not_proven || !summary.deviation.proven())
+      pv::warn(this, "Deviation: it is not proven, the coordinates may be too large");
     const auto data = pv::to_vtk(std::move(simple.mesh));
     pv::add_texts(data, {{"deviation_nm", fmt::format("{:.9g}", summary.deviation.largest_nm())}});
     pv::add_record(data, "mesh", record_of(options));

@@ -62,7 +62,7 @@ OWNERS = [("surf/io/sim/", "io_sim"), ("surf/io/model/", "io_models"), ("surf/io
 THIRD_PARTY = [
     ("embree*/*", ["mc_sim/src/geometry/embree_scene.cpp"]),
     ("CGAL/*", ["libsurf/src/mesh/cgal_*.cpp"]),
-    ("OpenMesh/*", ["libsurf/src/mesh/simplify_mesh.cpp"]),
+    ("OpenMesh/*", ["libsurf/src/mesh/openmesh_*.cpp"]),
     ("Eigen/*", ["libsurf/src/afm/cholesky.cpp", "libsurf/src/reconstruction/descent.cpp", "libsurf/src/reconstruction/preconditioner.cpp",
                  "libsurf/src/registration/correlation.cpp", "libsurf/src/registration/landmarks.cpp",
                  "libsurf/src/registration/uncertainty.cpp", "libsurf/src/sem/calibration/calibration.cpp",

@@ -11,9 +11,9 @@
 #include "surf/core/error.h"
 #include "surf/mesh/check_mesh.h"
 #include "surf/mesh/height_field_mesh.h"
+#include "surf/mesh/mesh_deviation.h"
 #include "surf/mesh/self_intersections.h"
 #include "surf/mesh/shapes.h"
-#include "surf/mesh/simplify_mesh.h"
 
 namespace surf {
 namespace {

@@ -10,6 +10,7 @@
 #include "surf/core/error.h"
 #include "surf/mesh/check_mesh.h"
 #include "surf/mesh/height_field_mesh.h"
+#include "surf/mesh/mesh_deviation.h"
 #include "surf/mesh/shapes.h"
 
 namespace surf {

@@ -17,8 +17,8 @@ struct SimplifiedBody {
   /// For a height field including the continuation that the scan needs.
   std::size_t triangles_before = 0;
   std::size_t triangles_after = 0;
-  /// Largest distance between the two surfaces in nm, measured afterwards: proven for a height
-  /// field, at samples for a mesh (see mesh_deviation.h). 0 if the body is unchanged.
+  /// Bound of the distance between the two surfaces in nm, proven (see thin_height_field.h and
+  /// distance_bound.h). 0 if the body is unchanged.
   double deviation_nm = 0;
   std::string kept;  ///< why it is unchanged; empty: it is simplified
 };
