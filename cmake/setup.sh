@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Set-up shared by ./run and ./check; source it after setting -euo pipefail. Functions:
 #   setup_packages        installs what is missing of the list below
-#   setup_programs        installs the programs that files are tried in, as far as they can be had
+#   setup_programs        installs the programs that only ./check --all uses, as far as they can be had
 #   setup_node FOLDER...  fetches the packages of Node.js that a folder's lock names
 #   setup_configure       configures the preset `release` into build/, once
 # All leave everything alone when there is nothing to do.
@@ -28,7 +28,8 @@ packages=(
 # The pages of semsurf view. Debian's npm conflicts with other packages of Node.js: any that is there will do.
 command -v node >/dev/null && command -v npm >/dev/null || packages+=(nodejs npm)
 
-# Programs that open what semsurf writes, for the tests labelled `programs`: about 1.5 GB.
+# For ./check --all: programs that open what semsurf writes, for the tests labelled `programs` (about 1.5 GB), and what
+# builds and runs the libraries for another processor.
 programs=(
   admesh assimp-utils f3d freecad-python3 blender python3-numpy   # what opens surfaces
   paraview                                                        # the plugin with the mouse
@@ -36,6 +37,7 @@ programs=(
   chromium                                                        # what shows web pages and glTF
   lib3mf-dev                                                      # the 3MF Consortium's own reader
   gwyddion                                                        # AFM formats that only it knows
+  g++-aarch64-linux-gnu clang qemu-user                           # AArch64
 )
 
 say() { printf '==> %s\n' "$*"; }

@@ -1,6 +1,6 @@
 # Called by ctest: lists the suites of a test program and gives each to ctest as one process, or two where some of its
 # cases are for ./check --all. Variables: PROGRAM, NAME, LONG (patterns of Suite.Case), LIST (the file that remembers), INPUTS (files
-# on which the suites depend), BUSY (patterns of Suite), LABELS, TIMEOUT.
+# on which the suites depend), EMULATOR (what runs it where it was built for another processor), BUSY (patterns of Suite), LABELS, TIMEOUT.
 set(current FALSE)
 if(EXISTS "${LIST}")
   set(current TRUE)
@@ -19,12 +19,16 @@ if(NOT EXISTS "${PROGRAM}")
   set_tests_properties("${NAME}.not_built" PROPERTIES LABELS "${LABELS}")
   return()
 endif()
-execute_process(COMMAND "${PROGRAM}" --gtest_list_tests OUTPUT_VARIABLE listing RESULT_VARIABLE status)
+execute_process(COMMAND ${EMULATOR} "${PROGRAM}" --gtest_list_tests OUTPUT_VARIABLE listing RESULT_VARIABLE status)
 if(NOT status EQUAL 0)
   message(FATAL_ERROR "${PROGRAM} cannot list its tests: ${status}")
 endif()
 
 set(script "")
+set(command "")
+foreach(word IN LISTS EMULATOR PROGRAM)
+  string(APPEND command "[=[${word}]=] ")
+endforeach()
 # One entry of ctest: the cases that `filter` chooses.
 macro(semsurf_add_suite entry filter labels)
   set(processors 1)
@@ -33,7 +37,7 @@ macro(semsurf_add_suite entry filter labels)
       set(processors 2)
     endif()
   endforeach()
-  string(APPEND script "add_test([=[${entry}]=] [=[${PROGRAM}]=] [=[--gtest_filter=${filter}]=])\n"
+  string(APPEND script "add_test([=[${entry}]=] ${command} [=[--gtest_filter=${filter}]=])\n"
          "set_tests_properties([=[${entry}]=] PROPERTIES TIMEOUT ${TIMEOUT} PROCESSORS ${processors} LABELS [=[${labels}]=])\n")
 endmacro()
 macro(semsurf_end_suite)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "core/left_out_targets.h"
+
 #include <hwy/targets.h>
 
 #include <cstdint>
@@ -11,11 +13,7 @@ namespace surf::test {
 
 /// The instruction sets that this machine has and loops are compiled for, the best first, and that
 /// of processors without (libsurf/src/core/each_target.h).
-inline std::vector<std::int64_t> vector_targets() {
-  std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
-  std::erase_if(targets, [](std::int64_t t) { return t == HWY_SSSE3; });
-  return targets;
-}
+inline std::vector<std::int64_t> vector_targets() { return hwy::SupportedAndGeneratedTargets(); }
 
 inline std::string name_of_target(std::int64_t target) { return hwy::TargetName(target); }
 

@@ -12,11 +12,7 @@
 // processor supports. Arithmetic is written as plain loops or with the compiler's vectors of
 // SEMSURF_VECTOR_BYTES, whose operators read like formulas. This header has no include guard,
 // because it is included again for each target.
-#ifndef HWY_DISABLED_TARGETS
-// Sizeless vectors cannot be members of structs. SSSE3 without SSE4 is found only in processors
-// from before 2008.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
-#endif
+#include "core/left_out_targets.h"
 
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>

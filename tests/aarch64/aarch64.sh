@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Builds libsurf, mc_sim and their tests for AArch64 and runs them under qemu-user. Usage: aarch64.sh gcc|clang
+# Exit code 77: this machine lacks what it takes. docs/testing.md says what is run.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+
+skip() { printf 'skipped: %s\n' "$*"; exit 77; }
+case ${1:-} in
+  gcc) preset=aarch64 compiler=aarch64-linux-gnu-g++ ;;
+  clang) preset=aarch64-clang compiler=clang++ ;;
+  *) printf 'usage: %s gcc|clang\n' "$0" >&2; exit 2 ;;
+esac
+[[ $(uname -m) != aarch64 ]] || skip "this machine is AArch64: the other tests are these"
+# clang links with the GNU linker for AArch64.
+for program in qemu-aarch64 aarch64-linux-gnu-ld "$compiler"; do
+  command -v "$program" >/dev/null ||
+    skip "there is no $program: apt-get install g++-aarch64-linux-gnu qemu-user clang"
+done
+
+began=$SECONDS
+step() {
+  printf '%s: %d:%02d\n' "$1" $(((SECONDS - began) / 60)) $(((SECONDS - began) % 60))
+  began=$SECONDS
+}
+cmake/aarch64/sysroot.sh build-aarch64/sysroot
+step "arm64 packages"
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+cmake --preset "$preset" >"$log" 2>&1 || { cat "$log"; exit 1; }
+cmake --build --preset "$preset" >"$log" 2>&1 || { grep -v '^\[' "$log"; exit 1; }
+step "build"
+ctest --preset "$preset" --parallel "$(nproc)"
+step "tests"
