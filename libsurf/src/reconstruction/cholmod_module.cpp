@@ -105,9 +105,8 @@ std::unique_ptr<Factor> make_double_factor(std::shared_ptr<const Dissection> ord
   return std::make_unique<CholmodFactor>(std::move(order));
 }
 
-constexpr CholmodLibrary table{make_double_factor,       make_single_factor,
-                               openblas_set_num_threads, openblas_get_num_threads,
-                               openblas_get_parallel};
+constexpr CholmodLibrary table{make_double_factor, make_single_factor, openblas_set_num_threads,
+                               openblas_get_num_threads, openblas_get_parallel};
 
 }  // namespace
 }  // namespace surf::reconstruction

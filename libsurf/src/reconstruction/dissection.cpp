@@ -54,7 +54,8 @@ class Builder {
       const Area& p = parts_[i];
       std::vector<int>& border = to_.fronts[i].border;
       for (int y = std::max(0, p.y_begin - reach); y < std::min(to_.height, p.y_end + reach); ++y)
-        for (int x = std::max(0, p.x_begin - reach); x < std::min(to_.width, p.x_end + reach); ++x) {
+        for (int x = std::max(0, p.x_begin - reach); x < std::min(to_.width, p.x_end + reach);
+             ++x) {
           const int dx = std::max({p.x_begin - x, x - p.x_end + 1, 0}),
                     dy = std::max({p.y_begin - y, y - p.y_end + 1, 0});
           if (dx + dy > 0 && dx + dy <= reach) border.push_back(to_.place[y * to_.width + x]);
@@ -68,8 +69,9 @@ class Builder {
         f.in_parent.push_back(
             place < p.first + p.own
                 ? place - p.first
-                : p.own + static_cast<int>(std::lower_bound(p.border.begin(), p.border.end(), place) -
-                                           p.border.begin()));
+                : p.own +
+                      static_cast<int>(std::lower_bound(p.border.begin(), p.border.end(), place) -
+                                       p.border.begin()));
     }
   }
 
@@ -84,6 +86,15 @@ Dissection::Dissection(int w, int h) : width(w), height(h), place(static_cast<st
   Builder builder(*this);
   builder.add({0, 0, width, height}, 0);
   builder.add_borders();
+}
+
+double Dissection::flops() const {
+  double sum = 0;
+  for (const Front& f : fronts) {
+    const double own = f.own, left = static_cast<double>(f.border.size());
+    sum += own * own * own / 3 + own * own * left + own * left * left;
+  }
+  return sum;
 }
 
 }  // namespace surf::reconstruction

@@ -234,20 +234,19 @@ Step Preconditioner::solve(const Step& residual) const {
 
 std::vector<Grid<double>> Preconditioner::solve_heights(const std::vector<Step>& r) const {
   std::vector<std::vector<Grid<double>>> parts(tiles_.size());
-  parallel_for(tiles_.size(), std::min(threads_, OneBlasThread::most_at_once()),
-               [&](std::size_t i, int) {
-                 const Tile& t = tiles_[i];
-                 for (const Step& one : r) {
-                   Grid<double> right(t.area.width(), t.area.height());
-                   for (int y = 0; y < right.height(); ++y)
-                     for (int x = 0; x < right.width(); ++x)
-                       right(x, y) =
-                           t.share(x, y) * one.z_nm(x + t.area.x_begin, y + t.area.y_begin);
-                   parts[i].push_back(std::move(right));
-                 }
-                 if (tile_px_ > 0) t.factor.solve_coarsely(parts[i]);
-                 else t.factor.solve(parts[i]);
-               });
+  parallel_for(
+      tiles_.size(), std::min(threads_, OneBlasThread::most_at_once()), [&](std::size_t i, int) {
+        const Tile& t = tiles_[i];
+        for (const Step& one : r) {
+          Grid<double> right(t.area.width(), t.area.height());
+          for (int y = 0; y < right.height(); ++y)
+            for (int x = 0; x < right.width(); ++x)
+              right(x, y) = t.share(x, y) * one.z_nm(x + t.area.x_begin, y + t.area.y_begin);
+          parts[i].push_back(std::move(right));
+        }
+        if (tile_px_ > 0) t.factor.solve_coarsely(parts[i]);
+        else t.factor.solve(parts[i]);
+      });
   std::vector<Grid<double>> out;
   for (std::size_t k = 0; k < r.size(); ++k) {
     out.emplace_back(r[k].z_nm.width(), r[k].z_nm.height());
@@ -299,28 +298,28 @@ Preconditioner::Variances Preconditioner::variances(const CurvaturePrior& prior,
     height = std::max(height, t.area.y_end);
   }
   Variances out{Grid<double>(width, height), Grid<double>(width, height)};
-  parallel_for(
-      tiles_.size(), std::min(threads_, OneBlasThread::most_at_once()), [&](std::size_t i, int) {
-        const Tile& t = tiles_[i];
-        NormalNumbers normal(seed, 3 + i);
-        for (int begun = 0; begun < draws; begun += draws_at_once) {
-          if (watch.cancelled()) return;
-          std::vector<Grid<double>> drawn(std::min(draws_at_once, draws - begun),
-                                          Grid<double>(t.area.width(), t.area.height()));
-          for (Grid<double>& white : drawn)
-            for (double& v : white.data()) v = normal();
-          t.factor.draw(drawn);
-          for (const Grid<double>& z : drawn) {
-            const Grid<double> curvature = prior.squared_curvature(z);
-            for (int y = t.own.y_begin; y < t.own.y_end; ++y)
-              for (int x = t.own.x_begin; x < t.own.x_end; ++x) {
-                const int u = x - t.area.x_begin, v = y - t.area.y_begin;
-                out.height_nm2(x, y) += z(u, v) * z(u, v) / draws;
-                out.curvature_per_nm2(x, y) += curvature(u, v) / draws;
-              }
-          }
-        }
-      });
+  parallel_for(tiles_.size(), std::min(threads_, OneBlasThread::most_at_once()),
+               [&](std::size_t i, int) {
+                 const Tile& t = tiles_[i];
+                 NormalNumbers normal(seed, 3 + i);
+                 for (int begun = 0; begun < draws; begun += draws_at_once) {
+                   if (watch.cancelled()) return;
+                   std::vector<Grid<double>> drawn(std::min(draws_at_once, draws - begun),
+                                                   Grid<double>(t.area.width(), t.area.height()));
+                   for (Grid<double>& white : drawn)
+                     for (double& v : white.data()) v = normal();
+                   t.factor.draw(drawn);
+                   for (const Grid<double>& z : drawn) {
+                     const Grid<double> curvature = prior.squared_curvature(z);
+                     for (int y = t.own.y_begin; y < t.own.y_end; ++y)
+                       for (int x = t.own.x_begin; x < t.own.x_end; ++x) {
+                         const int u = x - t.area.x_begin, v = y - t.area.y_begin;
+                         out.height_nm2(x, y) += z(u, v) * z(u, v) / draws;
+                         out.curvature_per_nm2(x, y) += curvature(u, v) / draws;
+                       }
+                   }
+                 }
+               });
   watch.check();
   return out;
 }
@@ -330,10 +329,10 @@ int Preconditioner::double_tiles() const {
   return static_cast<int>(std::count_if(tiles_.begin(), tiles_.end(),
                                         [](const Tile& t) { return !t.factor.is_single(); }));
 }
-double Preconditioner::error() const {
-  double most = 0;
-  for (const Tile& t : tiles_) most = std::max(most, t.factor.error());
-  return most;
+double Preconditioner::flops() const {
+  double sum = 0;
+  for (const Tile& t : tiles_) sum += t.factor.order().flops();
+  return sum;
 }
 std::size_t Preconditioner::bytes() const {
   std::size_t sum = 0;

@@ -25,8 +25,7 @@ class Preconditioner {
   /// Tiles of about `tile_px` overlap and are factorised separately, so that the work is
   /// proportional to the area and all threads share it. 0: a single tile, which gives the inverse
   /// of the matrix up to rounding.
-  Preconditioner(int tile_px, int threads,
-                 Precision precision = Precision::single_where_it_holds);
+  Preconditioner(int tile_px, int threads, Precision precision = Precision::single_where_it_holds);
   ~Preconditioner();
 
   /// Factorises for the weights and contacts of this state. The first call also finds the order of
@@ -49,8 +48,9 @@ class Preconditioner {
                       const Watch& watch) const;
 
   int tiles() const;
-  int double_tiles() const;  ///< tiles whose factor is in double precision
-  double error() const;      ///< the largest SparseFactor::error
+  int double_tiles() const;   ///< tiles whose factor is in double precision
+  double error() const;       ///< the largest SparseFactor::error
+  double flops() const;       ///< of all factors in single precision
   std::size_t bytes() const;  ///< of all factors
 
  private:

@@ -123,9 +123,7 @@ class SingleFactor final : public Factor {
   bool compute(const StencilMatrix& matrix, const Area& area) override;
   void solve(std::vector<Grid<double>>& x) override { run(x, true); }
   void draw(std::vector<Grid<double>>& x) override { run(x, false); }
-  std::size_t bytes() const override {
-    return sizeof(float) * (panels_.size() + scale_.size());
-  }
+  std::size_t bytes() const override { return sizeof(float) * (panels_.size() + scale_.size()); }
 
  private:
   /// What is left of a front for its parent: the lower triangle of a square matrix.

@@ -36,8 +36,9 @@ enum class Precision {
 };
 
 /// The Cholesky factor of a matrix between the samples of an area. It is kept in single precision,
-/// which halves memory and time, unless that is too coarse for the matrix: then in double precision,
-/// by CHOLMOD. Only one thread at a time may use a factor; keep a OneBlasThread during its use.
+/// which halves memory and time, unless that is too coarse for the matrix: then in double
+/// precision, by CHOLMOD. Only one thread at a time may use a factor; keep a OneBlasThread during
+/// its use.
 class SparseFactor {
  public:
   /// The largest relative error, in the root mean square, that a solution by a factor in single
@@ -66,6 +67,7 @@ class SparseFactor {
   /// The error that `largest_error` limits, as measured for this matrix; 0 in double precision.
   double error() const { return error_; }
   std::size_t bytes() const;
+  const Dissection& order() const { return *order_; }
 
  private:
   bool holds();

@@ -18,8 +18,8 @@ struct Area {
   int samples() const { return width() * height(); }
 };
 
-/// A symmetric matrix between samples of a field that are at most two steps along x and y apart. The
-/// entry of each pair is stored at its later sample in row-major order.
+/// A symmetric matrix between samples of a field that are at most two steps along x and y apart.
+/// The entry of each pair is stored at its later sample in row-major order.
 class StencilMatrix {
  public:
   /// A place relative to a sample.
@@ -28,7 +28,7 @@ class StencilMatrix {
   };
   static constexpr int slots = 7;
   /// Where the pairs of a sample lie: they rise in row-major order, the sample itself is the last.
-  static constexpr Offset offsets[slots] = {{0, -2},  {-1, -1}, {0, -1}, {1, -1},
+  static constexpr Offset offsets[slots] = {{0, -2}, {-1, -1}, {0, -1}, {1, -1},
                                             {-2, 0}, {-1, 0},  {0, 0}};
 
   StencilMatrix(int width, int height)
