@@ -248,6 +248,7 @@ int main(int argc, char** argv) {
     else surface = word;
   }
   if (sides.empty()) sides = {64, 128, 256};
+  setvbuf(stdout, nullptr, _IOLBF, 0);
   print_machine();
   for (const int side : sides) {
     const Scene scene(find_sample_surface(surface), side);

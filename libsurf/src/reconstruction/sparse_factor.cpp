@@ -11,12 +11,12 @@
 namespace surf::reconstruction {
 namespace {
 
-constexpr int most_refinements = 30;
+constexpr int most_refinements = 20;
 
-double squares(const Grid<double>& a) {
+double norm(const Grid<double>& a) {
   double sum = 0;
   for (const double v : a.data()) sum += v * v;
-  return sum;
+  return std::sqrt(sum);
 }
 
 }  // namespace
@@ -67,30 +67,30 @@ bool SparseFactor::holds() {
   std::vector<Grid<double>> found{std::move(right)};
   factor_->solve(found);
   for (std::size_t i = 0; i < known.size(); ++i) found[0].data()[i] += known.data()[i];
-  error_ = std::sqrt(squares(found[0]) / squares(known));
+  error_ = norm(found[0]) / norm(known);
   return error_ <= largest_error;  // false for NaN
 }
 
-/// Iterative refinement (Wilkinson 1963) with a coarse factor. Ends when residuals no longer fall
-/// to half; returns whether they have reached the rounding of their own sums.
+/// Iterative refinement (Wilkinson 1963) with a coarse factor, until residuals no longer fall to
+/// half. Returns whether they have then reached the rounding of double precision.
 bool SparseFactor::refine(std::vector<Grid<double>>& x) const {
   const std::vector<Grid<double>> right = x;
-  std::vector<Grid<double>> step = right;
+  std::vector<Grid<double>> left = right;
   for (Grid<double>& one : x) std::fill(one.data().begin(), one.data().end(), 0.0);
+  const double largest = matrix_->largest_row(area_);
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < most_refinements; ++i) {
-    factor_->solve(step);
-    double moved = 0;
+    factor_->solve(left);
+    double most = 0;  // of residuals, in units of what they are summed from
     for (std::size_t k = 0; k < x.size(); ++k) {
-      for (std::size_t p = 0; p < x[k].size(); ++p) x[k].data()[p] += step[k].data()[p];
-      const double size = squares(x[k]);
-      if (size > 0) moved = std::max(moved, std::sqrt(squares(step[k]) / size));
-      step[k] = right[k];
-      matrix_->subtract_product(area_, x[k], step[k]);
+      for (std::size_t p = 0; p < x[k].size(); ++p) x[k].data()[p] += left[k].data()[p];
+      left[k] = right[k];
+      matrix_->subtract_product(area_, x[k], left[k]);
+      const double terms = largest * norm(x[k]) + norm(right[k]);
+      if (terms > 0) most = std::max(most, norm(left[k]) / terms);
     }
-    if (!(moved < before)) return moved < 1e-6;
-    if (moved <= 4 * std::numeric_limits<double>::epsilon()) return true;
-    before = 0.5 * moved;
+    if (!(most < 0.5 * before)) return most < 4 * std::numeric_limits<double>::epsilon();
+    before = most;
   }
   return false;
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
-#include <cstdlib>
 #include <utility>
 #include <vector>
 
@@ -70,6 +71,18 @@ class StencilMatrix {
         y.data()[k] -= v * x.data()[row];
         if (row != k) y.data()[row] -= v * x.data()[k];
       });
+  }
+
+  /// The largest sum of absolute entries in a row of the matrix restricted to the area: at least
+  /// the largest eigenvalue.
+  double largest_row(const Area& area) const {
+    std::vector<double> sums(area.samples());
+    for (int k = 0; k < area.samples(); ++k)
+      for_each_in_column(area, k, [&](int row, double v) {
+        sums[k] += std::fabs(v);
+        if (row != k) sums[row] += std::fabs(v);
+      });
+    return *std::max_element(sums.begin(), sums.end());
   }
 
  private:
