@@ -207,7 +207,7 @@ Reconstruction print_whole(const Scene& s) {
   twice.double_precision = true;
   Reconstruction a, b;
   const auto bare = in_turn(
-      3, [&] { a = reconstruct(&s.afm, &s.sem, twice); },
+      s.truth.z_nm.size() > 20000 ? 1 : 3, [&] { a = reconstruct(&s.afm, &s.sem, twice); },
       [&] { b = reconstruct(&s.afm, &s.sem, single); });
   single.uncertainty = twice.uncertainty = true;
   Reconstruction p, q;
@@ -248,7 +248,7 @@ int main(int argc, char** argv) {
     else surface = word;
   }
   if (sides.empty()) sides = {64, 128, 256};
-  setvbuf(stdout, nullptr, _IOLBF, 0);
+  setvbuf(stdout, nullptr, _IOLBF, 0);  // large sides take long
   print_machine();
   for (const int side : sides) {
     const Scene scene(find_sample_surface(surface), side);
