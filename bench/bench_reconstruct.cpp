@@ -83,6 +83,8 @@ void print_costs(const Scene& s) {
                gradient = seconds([&] { o.gradient(at, state); });
   const double product = seconds([&] { o.product(at, state, g); }),
                factor = seconds([&] { m.factor(o, at, state); });
+  Preconditioner twice(Preconditioner::usual_tile_px, 0, Precision::double_always);
+  const double double_factor = seconds([&] { twice.factor(o, at, state); });
   const SemTerm::Near near = o.sem->near(*state.sem, at.mixture);
   const double sparse = seconds([&] { o.product(at, state, g, &near); }),
                made = seconds([&] { o.sem->near(*state.sem, at.mixture); });
@@ -93,6 +95,13 @@ void print_costs(const Scene& s) {
       "its solution {:.0f} ms; the SEM model alone {:.0f} ms, {:.0f} samples\n",
       1e3 * value, 1e3 * gradient, 1e3 * product, 1e3 * sparse, 1e3 * made, 1e3 * factor,
       1e3 * seconds([&] { m.solve(g); }), 1e3 * model, 1.0 * static_cast<double>(at.z_nm.size()));
+  fmt::print(
+      "  in double precision: factor {:.0f} ms, its solution {:.0f} ms, {:.0f} MB in place of "
+      "{:.0f}; "
+      "{} of {} tiles need it\n",
+      1e3 * double_factor, 1e3 * seconds([&] { twice.solve(g); }),
+      1e-6 * static_cast<double>(twice.bytes()), 1e-6 * static_cast<double>(m.bytes()),
+      m.double_tiles(), m.tiles());
 }
 
 /// When which scale ended, and how far its surface was off.
@@ -162,6 +171,10 @@ double judge(const std::string& folder, const std::shared_ptr<const ImageModel>&
       folder, start, floor);
   print_run("AFM alone", afm, alone, start, floor);
   print_run("AFM and SEM", both, rms(both.result.surface, s.truth), start, floor);
+  o.double_precision = true;
+  const Run twice = run(s, true, true, o);
+  o.double_precision = false;
+  print_run("in double precision", twice, rms(twice.result.surface, s.truth), start, floor);
   o.refine_calibration = false;
   const Run held = run(s, true, true, o);
   print_run("both, gains held", held, rms(held.result.surface, s.truth), start, floor);

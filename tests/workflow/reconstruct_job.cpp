@@ -340,6 +340,8 @@ TEST(ReconstructionCheckpoint, AStateComesBackToTheLastBit) {
   state.scales.resize(2);
   state.scales[1].ended = "converged";
   state.scales[1].products = 12;
+  state.scales[1].factors = 40;
+  state.scales[1].double_factors = 3;
   state.scales[1].sem_residual.like_noise = false;
   const std::string bytes = pack(state);
   const auto back = unpack(bytes);
@@ -349,6 +351,8 @@ TEST(ReconstructionCheckpoint, AStateComesBackToTheLastBit) {
   EXPECT_TRUE(std::signbit(back->surface.z_nm(1, 0)));
   EXPECT_EQ(back->tip_change, state.tip_change);
   EXPECT_EQ(back->scales[1].ended, "converged");
+  EXPECT_EQ(back->scales[1].factors, 40);
+  EXPECT_EQ(back->scales[1].double_factors, 3);
   EXPECT_FALSE(back->scales[1].sem_residual.like_noise);
   for (std::size_t size = 0; size < bytes.size(); ++size)
     EXPECT_FALSE(unpack(bytes.substr(0, size)).has_value()) << size;

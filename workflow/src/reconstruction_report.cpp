@@ -169,6 +169,8 @@ Json scales_json(const std::vector<ScaleReport>& scales) {
                     {"iterations", s.iterations},
                     {"evaluations", s.evaluations},
                     {"products", s.products},
+                    {"factors", s.factors},
+                    {"factors_in_double_precision", s.double_factors},
                     {"ended", s.ended},
                     {"afm_residual", residual_json(s.afm_residual)},
                     {"sem_residual", residual_json(s.sem_residual)}});

@@ -10,7 +10,7 @@
 namespace surf::workflow {
 namespace {
 
-constexpr char mark[] = "semsurf reconstruction 2\n";
+constexpr char mark[] = "semsurf reconstruction 3\n";
 
 /// Writes numbers as 8 bytes each, lowest first.
 class Writer {
@@ -91,7 +91,7 @@ void write(Writer& out, const ScaleReport& s) {
   for (const double value :
        {s.sigma_px, s.curvature_prior_per_nm, s.afm, s.sem, s.prior, s.gradient_norm})
     out.number(value);
-  for (const int value : {s.iterations, s.evaluations, s.products})
+  for (const int value : {s.iterations, s.evaluations, s.products, s.factors, s.double_factors})
     out.whole(static_cast<std::uint64_t>(value));
   out.text(s.ended);
   write(out, s.afm_residual);
@@ -103,7 +103,8 @@ ScaleReport read_scale(Reader& in) {
   for (double* value :
        {&s.sigma_px, &s.curvature_prior_per_nm, &s.afm, &s.sem, &s.prior, &s.gradient_norm})
     *value = in.number();
-  for (int* value : {&s.iterations, &s.evaluations, &s.products}) *value = in.small();
+  for (int* value : {&s.iterations, &s.evaluations, &s.products, &s.factors, &s.double_factors})
+    *value = in.small();
   s.ended = in.text();
   s.afm_residual = read_residual(in);
   s.sem_residual = read_residual(in);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cholmod_library.h"
+#include "single_factor.h"
 #include "surf/core/error.h"
 
 // Functions of OpenBLAS that no header in Debian declares.
@@ -17,33 +18,9 @@ int openblas_get_parallel();
 namespace surf::reconstruction {
 namespace {
 
-/// Nested dissection: both halves first, then the two rows or columns between them, which is the
-/// reach of the stencil. METIS finds no better order for a field, takes longer, and gives different
-/// orders if two threads call it at once.
-void add_dissected(const Area& part, int width, std::vector<int>& order) {
-  constexpr int reach = 2, small = 24;  // parts of at most this side are not divided
-  const auto add = [&](const Area& a) {
-    for (int y = a.y_begin; y < a.y_end; ++y)
-      for (int x = a.x_begin; x < a.x_end; ++x) order.push_back(y * width + x);
-  };
-  if (part.samples() <= small || std::max(part.width(), part.height()) <= 2 * reach)
-    return add(part);
-  Area before = part, between = part, after = part;
-  if (part.width() >= part.height()) {
-    before.x_end = between.x_begin = part.x_begin + (part.width() - reach) / 2;
-    between.x_end = after.x_begin = between.x_begin + reach;
-  } else {
-    before.y_end = between.y_begin = part.y_begin + (part.height() - reach) / 2;
-    between.y_end = after.y_begin = between.y_begin + reach;
-  }
-  add_dissected(before, width, order);
-  add_dissected(after, width, order);
-  add(between);
-}
-
 class CholmodFactor final : public Factor {
  public:
-  CholmodFactor() {
+  explicit CholmodFactor(std::shared_ptr<const Dissection> order) : order_(std::move(order)) {
     cholmod_start(&common_);
     common_.print = 0;
     common_.supernodal = CHOLMOD_SUPERNODAL;
@@ -59,37 +36,43 @@ class CholmodFactor final : public Factor {
     cholmod_finish(&common_);
   }
 
-  void compute(const StencilMatrix& m, const Area& area) override;
-  Grid<double> solve(const Grid<double>& right) override { return solved(CHOLMOD_A, right); }
-  Grid<double> draw(const Grid<double>& normal) override {
+  bool compute(const StencilMatrix& matrix, const Area& area) override;
+  void solve(std::vector<Grid<double>>& x) override { replace(CHOLMOD_A, x); }
+  void draw(std::vector<Grid<double>>& x) override {
     // A = P^T L L^T P. L^-T gives white numbers the covariance (L L^T)^-1, and P^T restores their
     // order.
-    return solved(CHOLMOD_Pt, solved(CHOLMOD_Lt, normal));
+    for (const int system : {CHOLMOD_P, CHOLMOD_Lt, CHOLMOD_Pt}) replace(system, x);
+  }
+  std::size_t bytes() const override {
+    return factor_ ? factor_->xsize * sizeof(double) + factor_->ssize * sizeof(int) : 0;
   }
 
  private:
-  /// Solves the given kind of system (see cholmod_solve) for this right side.
-  Grid<double> solved(int system, const Grid<double>& right) {
-    std::vector<double> numbers = right.data();
+  /// Replaces right sides by the solutions of the given kind of system (see cholmod_solve).
+  void replace(int system, std::vector<Grid<double>>& x) {
+    const std::size_t n = order_->samples();
+    std::vector<double> numbers;
+    for (const Grid<double>& one : x)
+      numbers.insert(numbers.end(), one.data().begin(), one.data().end());
     cholmod_dense b{};
-    b.nrow = b.d = b.nzmax = numbers.size();
-    b.ncol = 1;
+    b.nrow = b.d = n;
+    b.ncol = x.size();
+    b.nzmax = numbers.size();
     b.x = numbers.data();
     b.xtype = CHOLMOD_REAL;
     b.dtype = CHOLMOD_DOUBLE;
     cholmod_solve2(system, factor_, &b, nullptr, &x_, nullptr, &y_, &e_, &common_);
-    Grid<double> out(width_, height_);
-    std::copy_n(static_cast<const double*>(x_->x), numbers.size(), out.data().begin());
-    return out;
+    for (std::size_t k = 0; k < x.size(); ++k)
+      std::copy_n(static_cast<const double*>(x_->x) + k * n, n, x[k].data().begin());
   }
 
+  std::shared_ptr<const Dissection> order_;
   cholmod_common common_;
   cholmod_factor* factor_ = nullptr;
   cholmod_dense *x_ = nullptr, *y_ = nullptr, *e_ = nullptr;  // workspace of solve, reused
-  int width_ = 0, height_ = 0;
 };
 
-void CholmodFactor::compute(const StencilMatrix& m, const Area& area) {
+bool CholmodFactor::compute(const StencilMatrix& m, const Area& area) {
   const int n = area.samples();
   cholmod_common* const with = &common_;
   cholmod_sparse* a = cholmod_allocate_sparse(
@@ -110,23 +93,20 @@ void CholmodFactor::compute(const StencilMatrix& m, const Area& area) {
   }
   start[n] = at;
   if (!factor_) {
-    std::vector<int> order;
-    add_dissected({0, 0, area.width(), area.height()}, area.width(), order);
+    std::vector<int> order = order_->sample;
     factor_ = cholmod_analyze_p(a, order.data(), nullptr, 0, with);
   }
   cholmod_factorize(a, factor_, with);
   cholmod_free_sparse(&a, with);
-  if (with->status != CHOLMOD_OK)
-    throw InvalidInput("reconstruct", "the surface is not determined",
-                       "Give an AFM image, or a stronger prior");
-  width_ = area.width();
-  height_ = area.height();
+  return with->status == CHOLMOD_OK;
 }
 
-std::unique_ptr<Factor> make_factor() { return std::make_unique<CholmodFactor>(); }
+std::unique_ptr<Factor> make_double_factor(std::shared_ptr<const Dissection> order) {
+  return std::make_unique<CholmodFactor>(std::move(order));
+}
 
-constexpr CholmodLibrary table{make_factor, openblas_set_num_threads, openblas_get_num_threads,
-                               openblas_get_parallel};
+constexpr CholmodLibrary table{make_double_factor, make_single_factor, openblas_set_num_threads,
+                               openblas_get_num_threads, openblas_get_parallel};
 
 }  // namespace
 }  // namespace surf::reconstruction

@@ -96,7 +96,7 @@ DescentReport gauss_newton(const Objective& o, Unknowns& at, const DescentOption
   DescentReport report;
   Objective::State state = o.evaluate(at);
   ++report.evaluations;
-  Preconditioner m(Preconditioner::usual_tile_px, options.threads);
+  Preconditioner m(Preconditioner::usual_tile_px, options.threads, options.precision);
   SemTerm::Near near;
   double radius = std::numeric_limits<double>::infinity();
   report.ended = "iterations";
@@ -108,6 +108,8 @@ DescentReport gauss_newton(const Objective& o, Unknowns& at, const DescentOption
     // with them cost more than renewing them.
     if (stale) {
       m.factor(o, at, state);
+      report.factors += m.tiles();
+      report.double_factors += m.double_tiles();
       if (o.sem) near = o.sem->near(*state.sem, at.mixture);
     }
     const Quadratic quadratic{o, at, state, near, o.gradient(at, state)};

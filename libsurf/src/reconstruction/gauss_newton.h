@@ -4,6 +4,7 @@
 #include <string>
 
 #include "objective.h"
+#include "sparse_factor.h"
 #include "surf/core/progress.h"
 
 namespace surf::reconstruction {
@@ -13,11 +14,13 @@ struct DescentOptions {
   double tolerance = 1;    ///< nats; ends when an iteration lowers the objective by less
   int most_products = 60;  ///< per iteration
   int threads = 0;
+  Precision precision = Precision::single_where_it_holds;
   Watch watch;
 };
 
 struct DescentReport {
   int iterations = 0, evaluations = 0, products = 0;
+  int factors = 0, double_factors = 0;  ///< see ScaleReport
   double gradient_norm = 0;
   std::string ended;
 };

@@ -76,12 +76,12 @@ Step solve(const Objective& o, const Product& product, const Preconditioner& m, 
 }  // namespace
 
 Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint64_t seed,
-                    int threads, const Watch& watch) {
+                    int threads, Precision precision, const Watch& watch) {
   Objective::State state = o.evaluate(at);
   const Grid<double> found = o.prior.squared_curvature(at.z_nm);
   const SemTerm::Near near = o.sem ? o.sem->near(*state.sem, at.mixture) : SemTerm::Near();
   const auto product = [&](const Step& v) { return o.product(at, state, v, &near); };
-  Preconditioner m(Preconditioner::usual_tile_px, threads);
+  Preconditioner m(Preconditioner::usual_tile_px, threads, precision);
   Grid<double> without_sem;
   for (int round = 0; round < rounds; ++round) {
     m.factor(o, at, state);

@@ -26,7 +26,7 @@ struct Posterior {
 /// small deviations, because that surface is smoother than any draw. The bias by the prior is added
 /// in squares; where edges are rounder than the prior expects, it is the largest part.
 Posterior posterior(const Objective& objective, const Unknowns& at, int draws, std::uint64_t seed,
-                    int threads, const Watch& watch);
+                    int threads, Precision precision, const Watch& watch);
 
 /// One draw of the error, by noise and the prior's bias, of the heights that one linear step at the
 /// truth `at` gives.

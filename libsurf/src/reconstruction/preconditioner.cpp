@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -17,6 +19,9 @@ namespace {
 /// The overlap of neighbouring tiles in samples: three times the range of a contact's influence in
 /// a flat part.
 constexpr int overlap_px = 10;
+
+/// Draws that read a factor together: more do not take less time.
+constexpr int draws_at_once = 12;
 
 /// The bilinear weights of a place within the samples.
 struct Corners {
@@ -113,6 +118,8 @@ struct Preconditioner::Blocks {
   bool has_map = false, has_mixture = false, has_tip = false;
 
   void eliminate_tip(const Objective& o, const Objective::State& s, const Preconditioner& surface);
+  /// Adds what map, mixture and tip contribute to a solution of the heights alone.
+  void solve(const Step& residual, Step& out) const;
 };
 
 /// Eliminates the tip together with the surface. At a contact, tip and surface can compensate each
@@ -138,26 +145,33 @@ void Preconditioner::Blocks::eliminate_tip(const Objective& o, const Objective::
         coupling[k].z_nm(at.x + a % 2, at.y + a / 2) += q * at.w[a] * d[k];
   }
   has_tip = false;
-  for (int k = 0; k < tip_numbers; ++k) follows[k] = surface.solve(coupling[k]).z_nm;
+  std::vector<Step> responses = surface.solve({coupling.begin(), coupling.end()});
+  for (int k = 0; k < tip_numbers; ++k) follows[k] = std::move(responses[k].z_nm);
   has_tip = true;
   for (int i = 0; i < tip_numbers; ++i)
     for (int k = 0; k < tip_numbers; ++k) block(i, k) -= product(coupling[i].z_nm, follows[k]);
   tip.compute(at_least(block, o.tip_precision));
 }
 
-Preconditioner::Preconditioner(int tile_px, int threads)
-    : tile_px_(tile_px), threads_(resolve_threads(threads)), blocks_(std::make_unique<Blocks>()) {}
+Preconditioner::Preconditioner(int tile_px, int threads, Precision precision)
+    : tile_px_(tile_px), threads_(resolve_threads(threads)), precision_(precision),
+      blocks_(std::make_unique<Blocks>()) {}
 Preconditioner::~Preconditioner() = default;
 
 void Preconditioner::make_tiles(int width, int height) {
   // Tiles are so wide that a sample lies in at most two tiles along each axis.
   const int tile = tile_px_ > 0 ? std::max(tile_px_, 4 * overlap_px) : 0;
+  // Tiles of the same size share one dissection.
+  std::map<std::pair<int, int>, std::shared_ptr<const Dissection>> orders;
   for (const Span& v : spans(height, tile))
     for (const Span& u : spans(width, tile)) {
+      const int across = u.end - u.begin, along = v.end - v.begin;
+      auto& order = orders[{across, along}];
+      if (!order) order = std::make_shared<Dissection>(across, along);
       Tile t{{u.begin, v.begin, u.end, v.end},
              {u.own_begin, v.own_begin, u.own_end, v.own_end},
-             Grid<double>(u.end - u.begin, v.end - v.begin),
-             {}};
+             Grid<double>(across, along),
+             SparseFactor(order, precision_)};
       for (int y = 0; y < t.share.height(); ++y)
         for (int x = 0; x < t.share.width(); ++x)
           t.share(x, y) = std::sqrt(u.weights[x] * v.weights[y]);
@@ -167,9 +181,9 @@ void Preconditioner::make_tiles(int width, int height) {
 
 void Preconditioner::factor(const Objective& o, const Unknowns& at, const Objective::State& s) {
   const int w = o.frame.width, h = o.frame.height;
-  StencilMatrix m(w, h);
-  add_prior(o, s, m);
-  if (o.afm) add_contacts(o, s, m);
+  const auto m = std::make_shared<StencilMatrix>(w, h);
+  add_prior(o, s, *m);
+  if (o.afm) add_contacts(o, s, *m);
   if (tiles_.empty()) make_tiles(w, h);
   const OneBlasThread alone;
   parallel_for(tiles_.size(), std::min(threads_, OneBlasThread::most_at_once()),
@@ -214,47 +228,65 @@ void Preconditioner::factor(const Objective& o, const Unknowns& at, const Object
   if (o.afm && o.fit_tip) few.eliminate_tip(o, s, *this);
 }
 
-Step Preconditioner::solve(const Step& r) const {
-  const OneBlasThread alone;
-  Step out;
-  if (tiles_.size() == 1) {
-    out.z_nm = tiles_.front().factor.solve(r.z_nm);
-  } else {
-    std::vector<Grid<double>> parts(tiles_.size());
-    parallel_for(tiles_.size(), std::min(threads_, OneBlasThread::most_at_once()),
-                 [&](std::size_t i, int) {
-                   const Tile& t = tiles_[i];
-                   Grid<double> right(t.area.width(), t.area.height());
-                   for (int y = 0; y < right.height(); ++y)
-                     for (int x = 0; x < right.width(); ++x)
-                       right(x, y) = t.share(x, y) * r.z_nm(x + t.area.x_begin, y + t.area.y_begin);
-                   parts[i] = t.factor.solve(right);
-                 });
-    out.z_nm = Grid<double>(r.z_nm.width(), r.z_nm.height());
+Step Preconditioner::solve(const Step& residual) const {
+  return std::move(solve(std::vector<Step>{residual}).front());
+}
+
+std::vector<Grid<double>> Preconditioner::solve_heights(const std::vector<Step>& r) const {
+  std::vector<std::vector<Grid<double>>> parts(tiles_.size());
+  parallel_for(
+      tiles_.size(), std::min(threads_, OneBlasThread::most_at_once()), [&](std::size_t i, int) {
+        const Tile& t = tiles_[i];
+        for (const Step& one : r) {
+          Grid<double> right(t.area.width(), t.area.height());
+          for (int y = 0; y < right.height(); ++y)
+            for (int x = 0; x < right.width(); ++x)
+              right(x, y) = t.share(x, y) * one.z_nm(x + t.area.x_begin, y + t.area.y_begin);
+          parts[i].push_back(std::move(right));
+        }
+        if (tile_px_ > 0) t.factor.solve_coarsely(parts[i]);
+        else t.factor.solve(parts[i]);
+      });
+  std::vector<Grid<double>> out;
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    out.emplace_back(r[k].z_nm.width(), r[k].z_nm.height());
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const Tile& t = tiles_[i];
-      for (int y = 0; y < parts[i].height(); ++y)
-        for (int x = 0; x < parts[i].width(); ++x)
-          out.z_nm(x + t.area.x_begin, y + t.area.y_begin) += t.share(x, y) * parts[i](x, y);
-    }
-  }
-  if (blocks_->has_map)
-    Eigen::Map<Eigen::VectorXd>(out.map.data(), map_numbers) =
-        blocks_->map.solve(Eigen::Map<const Eigen::VectorXd>(r.map.data(), map_numbers));
-  if (blocks_->has_mixture)
-    Eigen::Map<Eigen::Vector2d>(out.mixture.data()) =
-        blocks_->mixture.solve(Eigen::Map<const Eigen::Vector2d>(r.mixture.data()));
-  if (blocks_->has_tip) {
-    Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(r.tip.data(), tip_numbers);
-    for (int k = 0; k < tip_numbers; ++k) right(k) -= product(blocks_->follows[k], r.z_nm);
-    const Eigen::VectorXd tip = blocks_->tip.solve(right);
-    for (int k = 0; k < tip_numbers; ++k) {
-      out.tip[k] = tip(k);
-      for (std::size_t i = 0; i < out.z_nm.size(); ++i)
-        out.z_nm.data()[i] -= tip(k) * blocks_->follows[k].data()[i];
+      for (int y = 0; y < t.area.height(); ++y)
+        for (int x = 0; x < t.area.width(); ++x)
+          out[k](x + t.area.x_begin, y + t.area.y_begin) += t.share(x, y) * parts[i][k](x, y);
     }
   }
   return out;
+}
+
+std::vector<Step> Preconditioner::solve(const std::vector<Step>& residuals) const {
+  const OneBlasThread alone;
+  std::vector<Grid<double>> heights = solve_heights(residuals);
+  std::vector<Step> out(residuals.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i].z_nm = std::move(heights[i]);
+    blocks_->solve(residuals[i], out[i]);
+  }
+  return out;
+}
+
+void Preconditioner::Blocks::solve(const Step& r, Step& out) const {
+  if (has_map)
+    Eigen::Map<Eigen::VectorXd>(out.map.data(), map_numbers) =
+        map.solve(Eigen::Map<const Eigen::VectorXd>(r.map.data(), map_numbers));
+  if (has_mixture)
+    Eigen::Map<Eigen::Vector2d>(out.mixture.data()) =
+        mixture.solve(Eigen::Map<const Eigen::Vector2d>(r.mixture.data()));
+  if (!has_tip) return;
+  Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(r.tip.data(), tip_numbers);
+  for (int k = 0; k < tip_numbers; ++k) right(k) -= product(follows[k], r.z_nm);
+  const Eigen::VectorXd change = tip.solve(right);
+  for (int k = 0; k < tip_numbers; ++k) {
+    out.tip[k] = change(k);
+    for (std::size_t i = 0; i < out.z_nm.size(); ++i)
+      out.z_nm.data()[i] -= change(k) * follows[k].data()[i];
+  }
 }
 
 Preconditioner::Variances Preconditioner::variances(const CurvaturePrior& prior, int draws,
@@ -266,25 +298,46 @@ Preconditioner::Variances Preconditioner::variances(const CurvaturePrior& prior,
     height = std::max(height, t.area.y_end);
   }
   Variances out{Grid<double>(width, height), Grid<double>(width, height)};
-  parallel_for(
-      tiles_.size(), std::min(threads_, OneBlasThread::most_at_once()), [&](std::size_t i, int) {
-        const Tile& t = tiles_[i];
-        NormalNumbers normal(seed, 3 + i);
-        for (int d = 0; d < draws; ++d) {
-          if (watch.cancelled()) return;
-          Grid<double> white(t.area.width(), t.area.height());
-          for (double& v : white.data()) v = normal();
-          const Grid<double> z = t.factor.draw(white), curvature = prior.squared_curvature(z);
-          for (int y = t.own.y_begin; y < t.own.y_end; ++y)
-            for (int x = t.own.x_begin; x < t.own.x_end; ++x) {
-              const int u = x - t.area.x_begin, v = y - t.area.y_begin;
-              out.height_nm2(x, y) += z(u, v) * z(u, v) / draws;
-              out.curvature_per_nm2(x, y) += curvature(u, v) / draws;
-            }
-        }
-      });
+  parallel_for(tiles_.size(), std::min(threads_, OneBlasThread::most_at_once()),
+               [&](std::size_t i, int) {
+                 const Tile& t = tiles_[i];
+                 NormalNumbers normal(seed, 3 + i);
+                 for (int begun = 0; begun < draws; begun += draws_at_once) {
+                   if (watch.cancelled()) return;
+                   std::vector<Grid<double>> drawn(std::min(draws_at_once, draws - begun),
+                                                   Grid<double>(t.area.width(), t.area.height()));
+                   for (Grid<double>& white : drawn)
+                     for (double& v : white.data()) v = normal();
+                   t.factor.draw(drawn);
+                   for (const Grid<double>& z : drawn) {
+                     const Grid<double> curvature = prior.squared_curvature(z);
+                     for (int y = t.own.y_begin; y < t.own.y_end; ++y)
+                       for (int x = t.own.x_begin; x < t.own.x_end; ++x) {
+                         const int u = x - t.area.x_begin, v = y - t.area.y_begin;
+                         out.height_nm2(x, y) += z(u, v) * z(u, v) / draws;
+                         out.curvature_per_nm2(x, y) += curvature(u, v) / draws;
+                       }
+                   }
+                 }
+               });
   watch.check();
   return out;
+}
+
+int Preconditioner::tiles() const { return static_cast<int>(tiles_.size()); }
+int Preconditioner::double_tiles() const {
+  return static_cast<int>(std::count_if(tiles_.begin(), tiles_.end(),
+                                        [](const Tile& t) { return !t.factor.is_single(); }));
+}
+double Preconditioner::flops() const {
+  double sum = 0;
+  for (const Tile& t : tiles_) sum += t.factor.order().flops();
+  return sum;
+}
+std::size_t Preconditioner::bytes() const {
+  std::size_t sum = 0;
+  for (const Tile& t : tiles_) sum += t.factor.bytes();
+  return sum;
 }
 
 }  // namespace surf::reconstruction

@@ -205,6 +205,7 @@ class Work {
                                           : 5e-5) *
                   static_cast<double>(pixels());
     o.threads = options_.threads;
+    o.precision = precision();
     o.watch = watch;
     DescentReport d;
     if (newton) {
@@ -241,6 +242,8 @@ class Work {
                   d.iterations,
                   d.evaluations,
                   d.products,
+                  d.factors,
+                  d.double_factors,
                   d.ended,
                   {},
                   {}};
@@ -272,8 +275,14 @@ class Work {
     d.iterations += next.iterations;
     d.evaluations += next.evaluations;
     d.products += next.products;
+    d.factors += next.factors;
+    d.double_factors += next.double_factors;
     d.gradient_norm = next.gradient_norm;
     d.ended = next.ended;
+  }
+
+  Precision precision() const {
+    return options_.double_precision ? Precision::double_always : Precision::single_where_it_holds;
   }
 
   std::int64_t pixels() const {
@@ -342,8 +351,9 @@ class Work {
       out.sem_residual = cut(sem_white(s));
     }
     if (options_.uncertainty) {
-      const Posterior p = posterior(objective_, at_, options_.probes, options_.seed,
-                                    options_.threads, options_.watch.part(share_of_scales, 1));
+      const Posterior p =
+          posterior(objective_, at_, options_.probes, options_.seed, options_.threads, precision(),
+                    options_.watch.part(share_of_scales, 1));
       out.deviation_nm = cut(p.deviation_nm);
       out.held_by = cut(p.held_by);
     }
@@ -369,7 +379,7 @@ class Work {
     }
     if (options_.curvature_prior_per_nm == 0) loosen_prior();
     const Objective::State s = objective_.evaluate(at_);
-    Preconditioner m(Preconditioner::usual_tile_px, options_.threads);
+    Preconditioner m(Preconditioner::usual_tile_px, options_.threads, precision());
     m.factor(objective_, at_, s);
     double sum = 0;
     for (int d = 0; d < draws; ++d) {

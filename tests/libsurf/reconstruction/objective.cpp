@@ -8,6 +8,7 @@
 
 #include "afm/normal_numbers.h"
 #include "reconstruction/gaussian_basis.h"
+#include "reconstruction/posterior.h"
 #include "reconstruction/preconditioner.h"
 #include "reconstruction/start.h"
 #include "small_scene.h"
@@ -236,7 +237,7 @@ TEST(Preconditioner, TilesAreSymmetricAndDoNotDependOnThreads) {
   Preconditioner one(48, 1), three(48, 3), whole(0, 1);
   for (Preconditioner* m : {&one, &three, &whole}) m->factor(o, at, s);
   const Step u = random_step(o, 1), v = random_step(o, 2), mu = one.solve(u), mv = one.solve(v);
-  EXPECT_NEAR(dot(u, mv), dot(mu, v), 1e-9 * std::fabs(dot(u, mu)));
+  EXPECT_NEAR(dot(u, mv), dot(mu, v), 1e-7 * std::fabs(dot(u, mu)));  // single precision
   EXPECT_GT(dot(u, mu), 0);
   EXPECT_EQ(three.solve(u).z_nm.data(), mu.z_nm.data());
   // Where what it is asked is smooth it answers nearly as the whole matrix does, seams included.
@@ -249,7 +250,54 @@ TEST(Preconditioner, TilesAreSymmetricAndDoNotDependOnThreads) {
     off += std::pow(tiled.data()[i] - exact.data()[i], 2);
     all += std::pow(exact.data()[i], 2);
   }
-  EXPECT_LT(off, 0.01 * all);
+  EXPECT_LT(off, 0.012 * all);
+}
+
+TEST(Preconditioner, SeveralResidualsAreSolvedAsOneByOne) {
+  const test::SmallScene scene(5, 112, 90);
+  const Objective o = make_objective(scene, Images::both);
+  const Unknowns at = start_at(scene, o);
+  Preconditioner m(48, 2);
+  m.factor(o, at, o.evaluate(at));
+  EXPECT_EQ(m.double_tiles(), 0);
+  const std::vector<Step> all{random_step(o, 1), random_step(o, 2), random_step(o, 3)};
+  const std::vector<Step> solved = m.solve(all);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const Step one = m.solve(all[k]);
+    EXPECT_EQ(one.z_nm, solved[k].z_nm);
+    EXPECT_EQ(one.map, solved[k].map);
+    EXPECT_EQ(one.mixture, solved[k].mixture);
+    EXPECT_EQ(one.tip, solved[k].tip);
+  }
+}
+
+TEST(Preconditioner, SinglePrecisionGivesTheVariancesOfDoublePrecision) {
+  const test::SmallScene scene;
+  const Objective o = make_objective(scene, Images::both);
+  const Unknowns at = start_at(scene, o);
+  const Objective::State s = o.evaluate(at);
+  Preconditioner single(48, 1), three(48, 3), twice(48, 1, Precision::double_always);
+  for (Preconditioner* m : {&single, &three, &twice}) m->factor(o, at, s);
+  EXPECT_EQ(single.double_tiles(), 0);
+  EXPECT_EQ(twice.double_tiles(), twice.tiles());
+  EXPECT_LT(single.bytes(), 0.55 * static_cast<double>(twice.bytes()));
+  const Grid<double> a = single.variances(o.prior, 15, 5, {}).height_nm2,
+                     b = twice.variances(o.prior, 15, 5, {}).height_nm2;
+  EXPECT_EQ(three.variances(o.prior, 15, 5, {}).height_nm2, a);
+  for (std::size_t i = 0; i < a.size(); ++i)
+    ASSERT_NEAR(a.data()[i], b.data()[i], 0.01 * b.data()[i]) << i;
+}
+
+TEST(Posterior, DeviationsOfBothPrecisionsAgree) {
+  const test::SmallScene scene;
+  const Objective o = make_objective(scene, Images::both);
+  const Unknowns at = start_at(scene, o);
+  const Grid<double> a = posterior(o, at, 6, 1, 1, Precision::single_where_it_holds, {})
+                             .deviation_nm,
+                     b = posterior(o, at, 6, 1, 1, Precision::double_always, {}).deviation_nm;
+  EXPECT_EQ(posterior(o, at, 6, 1, 3, Precision::single_where_it_holds, {}).deviation_nm, a);
+  for (std::size_t i = 0; i < a.size(); ++i)
+    ASSERT_NEAR(a.data()[i], b.data()[i], 0.01 * b.data()[i]) << i;
 }
 
 TEST(SemTerm, NearDoesToWavesOfTwelveSamplesWhatTheModelDoes) {

@@ -74,10 +74,14 @@ struct ReconstructionOptions {
   int probes = 6;           ///< draws for the estimate of the uncertainty, >= 2
   std::uint64_t seed = 1;   ///< seed of these draws
   int threads = 0;          ///< 0: one per hardware thread. Does not change the result
+  /// Gauss-Newton's preconditioner is factorised in double precision throughout, for comparisons.
+  /// false: in single precision, which takes half the time and memory, except where that is too
+  /// coarse (see `ScaleReport::double_factors`).
+  bool double_precision = false;
   Watch watch;
 };
-/// Describes the parameters reconstruction.optimiser, reconstruction.scales and so on, but not the
-/// threads.
+/// Describes the parameters reconstruction.optimiser, reconstruction.scales and so on, but neither
+/// the threads nor the precision.
 void describe(ParameterVisitor& visit, ReconstructionOptions& options);
 
 /// Statistics of an image's whitened residuals: standard normal and white if everything is right.
@@ -96,6 +100,9 @@ struct ScaleReport {
   double gradient_norm = 0;  ///< largest component of the gradient by the coefficients
   /// Evaluations of objective and gradient, and products of a Hessian and a vector.
   int iterations = 0, evaluations = 0, products = 0;
+  /// Factors of the preconditioner's tiles, and those of them in double precision, because the
+  /// tile's matrix cannot be solved in single precision, or because it was asked for.
+  int factors = 0, double_factors = 0;
   std::string ended;  ///< why the scale ended: "converged", "iterations" or "line search"
   ResidualReport afm_residual, sem_residual;
 };
