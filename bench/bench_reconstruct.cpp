@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
+#include "reconstruction/initial_surface.h"
 #include "reconstruction/objective.h"
 #include "reconstruction/preconditioner.h"
-#include "reconstruction/start.h"
 #include "sample_truth.h"
 #include "surf/io/model/model_file.h"
 #include "surf/io/plot.h"

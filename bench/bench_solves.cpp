@@ -14,9 +14,9 @@
 #include <thread>
 #include <vector>
 
+#include "reconstruction/initial_surface.h"
 #include "reconstruction/objective.h"
 #include "reconstruction/preconditioner.h"
-#include "reconstruction/start.h"
 #include "surf/afm/morphology.h"
 #include "surf/afm/tip_shapes.h"
 #include "surf/core/parallel.h"

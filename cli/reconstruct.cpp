@@ -51,10 +51,10 @@ void print_surface(const Reconstruction& r) {
     text += fmt::format("; standard deviation of a height {} (median)",
                         format_length(median(r.deviation_nm.data())));
   line("surface", text);
-  if (r.held_by.empty()) return;
+  if (r.data_support.empty()) return;
   const auto share = [&](unsigned char what) {
-    return 100.0 * static_cast<double>(std::ranges::count(r.held_by.data(), what)) /
-           static_cast<double>(r.held_by.size());
+    return 100.0 * static_cast<double>(std::ranges::count(r.data_support.data(), what)) /
+           static_cast<double>(r.data_support.size());
   };
   line("held by", fmt::format("AFM {:.0f} %, SEM {:.0f} %, both {:.0f} %, neighbours only {:.0f} %",
                               share(1), share(2), share(3), share(0)));

@@ -24,7 +24,7 @@ Inside inside(const test::SmallScene& scene, const Reconstruction& r, const Heig
     for (int x = 0; x < truth.z_nm.width(); ++x) {
       if (std::abs(truth.x_nm(x)) > width_nm / 2) continue;
       const double d = surface.z_nm(x, y) - truth.z_nm(x, y);
-      const int held = r.held_by(x, y);
+      const int held = r.data_support(x, y);
       sum.error_nm += d * d;
       sum.deviation_nm += r.deviation_nm(x, y) * r.deviation_nm(x, y);
       sum.touched += (held & 1) != 0;

@@ -56,7 +56,7 @@ Surface surface_of(const Reconstruction& r) {
   };
   add("height", "nm", r.surface.z_nm);
   if (!r.deviation_nm.empty()) add("deviation", "nm", r.deviation_nm);
-  if (!r.held_by.empty()) add("held_by", "1", r.held_by);
+  if (!r.data_support.empty()) add("data_support", "1", r.data_support);
   return surface;
 }
 
@@ -167,7 +167,7 @@ int vtkSemsurfReconstruct::RequestData(vtkInformation*, vtkInformationVector** i
           }
           if (!r.deviation_nm.empty())
             pv::add_values(surface, std::move(r.deviation_nm), "deviation_nm", "nm");
-          if (!r.held_by.empty()) pv::add_values(surface, std::move(r.held_by), "held_by", "1");
+          if (!r.data_support.empty()) pv::add_values(surface, std::move(r.data_support), "data_support", "1");
           if (r.start.z_nm.size() == r.surface.z_nm.size())
             pv::add_values(surface, std::move(r.start.z_nm), "start_nm", "nm");
           pv::add_heights(surface, std::move(r.surface));

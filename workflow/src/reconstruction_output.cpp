@@ -97,7 +97,8 @@ Image surface_image(const ReconstructSummary& s, const Metadata& made) {
   image.channels.push_back(channel("z_nm", "nm", r.surface.z_nm));
   if (!r.deviation_nm.empty())
     image.channels.push_back(channel("deviation_nm", "nm", r.deviation_nm));
-  if (!r.held_by.empty()) image.channels.push_back(channel("held_by", "1", r.held_by));
+  if (!r.data_support.empty())
+    image.channels.push_back(channel("data_support", "1", r.data_support));
   if (s.afm)
     image.channels.push_back(channel(
         "certain", "1", certain_on(r.surface, s.afm->certainty, s.pose ? r.sem_to_afm : Affine{})));
@@ -121,7 +122,7 @@ SurfaceScene surface_scene(const Reconstruction& r, const Metadata& made) {
   };
   if (!r.deviation_nm.empty()) scalar("deviation", "nm", r.deviation_nm);
   scalar("height", "nm", r.surface.z_nm);
-  if (!r.held_by.empty()) scalar("held_by", "1", r.held_by);
+  if (!r.data_support.empty()) scalar("data_support", "1", r.data_support);
   scene.surfaces.push_back(std::move(surface));
   return scene;
 }

@@ -191,9 +191,10 @@ io::Plot reconstruction_panel(const ReconstructJob& job, const ReconstructSummar
                             : blank;
     third.push_back(picture("surface less truth", on_samples(r.surface, std::move(error)),
                             PlotColors::difference, "nm"));
-  } else if (!r.held_by.empty()) {
-    PlotPanel held = picture("held by 1 AFM, 2 SEM, 3 both",
-                             on_samples(r.surface, as_numbers(r.held_by)), PlotColors::heights, "");
+  } else if (!r.data_support.empty()) {
+    PlotPanel held =
+        picture("held by 1 AFM, 2 SEM, 3 both", on_samples(r.surface, as_numbers(r.data_support)),
+                PlotColors::heights, "");
     held.image->range = io::PlotAxis::Range{0, 3};
     third.push_back(std::move(held));
   } else {

@@ -192,13 +192,13 @@ Json options_json(ReconstructJob used) {
 }
 
 /// Shares of the surface by data support.
-Json held_json(const Grid<unsigned char>& held_by) {
+Json held_json(const Grid<unsigned char>& data_support) {
   constexpr const char* names[] = {"nothing", "afm", "sem", "both"};
   Json json = Json::object();
   for (int what = 0; what < 4; ++what)
     json[names[what]] =
-        double(std::ranges::count(held_by.data(), static_cast<unsigned char>(what))) /
-        double(held_by.size());
+        double(std::ranges::count(data_support.data(), static_cast<unsigned char>(what))) /
+        double(data_support.size());
   return json;
 }
 
@@ -293,7 +293,7 @@ std::string reconstruction_report(const ReconstructJob& job, const ReconstructSu
   json["surface"] = {{"pixels", {r.surface.z_nm.width(), r.surface.z_nm.height()}},
                      {"pitch_nm", {r.surface.pitch_x_nm, r.surface.pitch_y_nm}},
                      {"converged", r.converged}};
-  if (!r.held_by.empty()) json["surface"]["held_by"] = held_json(r.held_by);
+  if (!r.data_support.empty()) json["surface"]["data_support"] = held_json(r.data_support);
   json["scales"] = scales_json(r.scales);
   if (s.truth) {
     const TruthReport& t = *s.truth;

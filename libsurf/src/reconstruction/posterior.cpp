@@ -117,11 +117,11 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     const double ratio = mean.data()[i] / expected.data()[i];
     out.deviation_nm.data()[i] = std::sqrt(without_sem.data()[i] * ratio + bias.data()[i]);
-    if (o.sem && ratio < 0.5) out.held_by.data()[i] = 2;
+    if (o.sem && ratio < 0.5) out.data_support.data()[i] = 2;
   }
   if (o.afm)
     for (const Contact& c : state.afm->contacts)
-      if (c.inside) out.held_by(static_cast<int>(c.x + 0.5), static_cast<int>(c.y + 0.5)) |= 1;
+      if (c.inside) out.data_support(static_cast<int>(c.x + 0.5), static_cast<int>(c.y + 0.5)) |= 1;
   return out;
 }
 

@@ -12,7 +12,7 @@ namespace surf::reconstruction {
 struct Posterior {
   /// Posterior standard deviation; map and mixture are free if they are fitted.
   Grid<double> deviation_nm;
-  Grid<unsigned char> held_by;  ///< see Reconstruction
+  Grid<unsigned char> data_support;  ///< see Reconstruction
 };
 
 /// The posterior standard deviations, linearised: the average over draws from N(0, A^-1). Each draw

@@ -9,8 +9,8 @@
 #include "descent.h"
 #include "gauss_newton.h"
 #include "gaussian_basis.h"
+#include "initial_surface.h"
 #include "posterior.h"
-#include "start.h"
 #include "surf/core/error.h"
 
 namespace surf {
@@ -355,7 +355,7 @@ class Work {
           posterior(objective_, at_, options_.probes, options_.seed, options_.threads, precision(),
                     options_.watch.part(share_of_scales, 1));
       out.deviation_nm = cut(p.deviation_nm);
-      out.held_by = cut(p.held_by);
+      out.data_support = cut(p.data_support);
     }
     return out;
   }

@@ -8,9 +8,9 @@
 
 #include "afm/normal_numbers.h"
 #include "reconstruction/gaussian_basis.h"
+#include "reconstruction/initial_surface.h"
 #include "reconstruction/posterior.h"
 #include "reconstruction/preconditioner.h"
-#include "reconstruction/start.h"
 #include "small_scene.h"
 #include "surf/core/random.h"
 

@@ -335,8 +335,8 @@ TEST(Reconstruct, SaysWhatTheTipDoesNotTouchAndTheSemHolds) {
   double untouched = 0, seen = 0, count = 0;
   for (int y = 4; y < 28; ++y)
     for (int x = 24; x < 32; ++x) {
-      untouched += (both.held_by(x, y) & 1) == 0;
-      seen += (both.held_by(x, y) & 2) != 0;
+      untouched += (both.data_support(x, y) & 1) == 0;
+      seen += (both.data_support(x, y) & 2) != 0;
       ++count;
     }
   EXPECT_GT(untouched / count, 0.95);

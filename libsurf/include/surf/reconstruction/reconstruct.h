@@ -149,7 +149,7 @@ struct Reconstruction {
   Grid<double> deviation_nm;
   /// The data that support each height. 1: the tip touched it. 2: the SEM image at least halves the
   /// variance of the height. 3: both. 0: only its neighbours and the prior.
-  Grid<unsigned char> held_by;
+  Grid<unsigned char> data_support;
   std::vector<ScaleReport> scales;
   bool converged = true;
   /// For people; if there are any, look before you trust the result.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "start.h"
+#include "initial_surface.h"
 
 #include <algorithm>
 #include <cmath>
