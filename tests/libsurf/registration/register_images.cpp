@@ -285,17 +285,17 @@ TEST(RegisterImages, AsksForTheOverlapThatIsWanted) {
 
 TEST(Repeats, AreOtherPlacesOfALatticeAndNoneOfSpots) {
   const Affine map = make_affine({0.3, 1.1, 0.9, 0.03, 7, -4});
-  const auto repeats_in = [&](const Scene& scene, Corners& best) {
+  const auto repeats_in = [&](const Scene& scene, ThreePointMap& best) {
     const PlacedImage sem = image_of(scene, map, 90, 70, 1, 0.3, 1),
                       afm = image_of(scene, {}, 80, 70, 1.25, 0.03, 2);
-    const CornerFrame frame(sem, afm);
-    best = frame.corners(map);
+    const ThreePointFrame frame(sem, afm);
+    best = frame.three_points(map);
     return repeats_of({sem, afm, frame, 2}, best, 4);
   };
-  Corners best;
-  const std::vector<Corners> repeats = repeats_in(lattice_of(14), best);
+  ThreePointMap best;
+  const std::vector<ThreePointMap> repeats = repeats_in(lattice_of(14), best);
   ASSERT_EQ(repeats.size(), 4U);
-  for (const Corners& c : repeats) {
+  for (const ThreePointMap& c : repeats) {
     const double x = c[0] - best[0], y = c[1] - best[1];
     EXPECT_GT(std::hypot(x, y), 13);
     EXPECT_LT(std::hypot(x, y), 45);
@@ -453,16 +453,16 @@ TEST(Correlation, DerivativesAreThoseOfDifferences) {
   const Spots spots(2);
   const PlacedImage sem = image_of(spots, {}, 40, 30, 1, 0.1, 1),
                     afm = image_of(spots, {}, 40, 40, 1.3, 0.1, 2);
-  const CornerFrame frame(sem, afm);
+  const ThreePointFrame frame(sem, afm);
   const BlurLevel level(sem, afm, frame, 1);
-  Corners c = frame.corners(make_affine({0.1, 1.02, 0.97, 0.01, 1.3, -0.4}));
+  ThreePointMap c = frame.three_points(make_affine({0.1, 1.02, 0.97, 0.01, 1.3, -0.4}));
   const Correlation correlation(level, c);
   const std::size_t n = correlation.size();
   std::vector<double> r(n), jacobian(6 * n), above(n), below(n);
   ASSERT_GT(correlation.evaluate(c.data(), r.data(), jacobian.data()), 0.1);
   constexpr double step = 1e-5;
   for (std::size_t p = 0; p < 6; ++p) {
-    Corners up = c, down = c;
+    ThreePointMap up = c, down = c;
     up[p] += step, down[p] -= step;
     correlation.evaluate(up.data(), above.data(), nullptr);
     correlation.evaluate(down.data(), below.data(), nullptr);
