@@ -79,7 +79,6 @@ std::vector<Operation> operations() {
        }},
       {"median",
        [](const HeightField& f, const Watch& watch) {
-         CleanSummary ignored;
          MedianOptions o;
          o.threads = 1;
          o.watch = watch;

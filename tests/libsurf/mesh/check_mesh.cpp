@@ -213,7 +213,7 @@ TEST(CheckMesh, RefusesDamagedMeshes) {
 TEST(TriangleComponents, AreNumberedByFirstAppearance) {
   TriangleMesh mesh = make_box({3, 3, 3}, {4, 4, 4});
   append(mesh, unit_cube());
-  std::ranges::rotate(mesh.triangles, mesh.triangles.begin() + 18);
+  std::rotate(mesh.triangles.begin(), mesh.triangles.begin() + 18, mesh.triangles.end());
   std::vector<std::uint32_t> expected(24, 0);
   std::fill(expected.begin() + 6, expected.begin() + 18, 1);
   EXPECT_EQ(triangle_components(mesh), expected);

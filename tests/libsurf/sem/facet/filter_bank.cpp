@@ -190,7 +190,8 @@ TEST(FilterBank, GoesOnBeyondTheBorderAsTheEdgeSays) {
         };
         const HeightField wide =
             sampled(width + 2 * margin, height + 2 * margin, 2, [&](int x, int y) {
-              return field.z_nm(at(x - margin, width), at(y - margin, height));
+              return field.z_nm(at(x - margin, field.z_nm.width()),
+                                at(y - margin, field.z_nm.height()));
             });
         const ModelOptions exact{.edge = edge, .double_precision = true};
         const ModelImages a = bank(multi)->predict(field, exact),
