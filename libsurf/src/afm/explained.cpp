@@ -51,44 +51,49 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 // Samples of the tip per pass, so that the result is loaded and stored once for all of them.
 constexpr int together = 4;
 
+// The offsets of samples from (i, j) on; neutral ones beyond the tip.
+void offsets(const CarvedTip& tip, int i, int j, float sign, float* four) {
+  for (int k = 0; k < together; ++k) {
+    const auto at = static_cast<std::size_t>(j * tip.stride + i + k);
+    const bool there = i + k < tip.width && tip.z[at] > -infinity;
+    four[k] = !there ? -sign * infinity : sign > 0 ? tip.z[at] : tip.threshold[at] - tip.z[at];
+  }
+}
+
 }  // namespace
 
-Grid<float> explained_height(const CarvedScan& scan, const CarvedTip& tip, int threads) {
+std::vector<float> apex_heights(const CarvedScan& scan, const CarvedTip& tip, int threads) {
   // The apex may lie outside the scan by the size of the tip.
   const int w = scan.width() + tip.width - 1, h = scan.height() + tip.height - 1;
-  const int left = tip.width - 1 - tip.apex_x,
-            below = tip.height - 1 - tip.apex_y;  // apex at (x - left, y - below)
-  const auto offsets = [&](int i, int j, float sign,
-                           float* four) {  // neutral offsets beyond the tip
-    for (int k = 0; k < together; ++k) {
-      const auto at = static_cast<std::size_t>(j * tip.stride + i + k);
-      const bool there = i + k < tip.width && tip.z[at] > -infinity;
-      four[k] = !there ? -sign * infinity : sign > 0 ? tip.z[at] : tip.threshold[at] - tip.z[at];
-    }
-  };
-  Grid<float> apex(w + together, h, infinity);  // with a margin on the left
+  const int left = tip.width - 1 - tip.apex_x, below = tip.height - 1 - tip.apex_y;
+  std::vector<float> apex(scan.size(), infinity);
   parallel_for(static_cast<std::size_t>(h), threads, [&](std::size_t row, int) {
-    const int y = static_cast<int>(row);
+    const int y = static_cast<int>(row) - below;
     float four[together];
     for (int j = 0; j < tip.height; ++j) {
-      const int sy = y - below + (j - tip.apex_y);
+      const int sy = y + j - tip.apex_y;
       if (sy < 0 || sy >= scan.height()) continue;  // beyond the scan everything is allowed
       for (int i = 0; i < tip.width; i += together) {
-        offsets(i, j, -1, four);
+        offsets(tip, i, j, -1, four);
         HWY_DYNAMIC_DISPATCH(lower_to)
-        (&apex(together, y), scan.top(i - tip.apex_x - left, sy), four, w);
+        (apex.data() + scan.offset(-left, y), scan.top(i - tip.apex_x - left, sy), four, w);
       }
     }
   });
+  return apex;
+}
+
+Grid<float> explained_height(const CarvedScan& scan, const std::vector<float>& apex,
+                             const CarvedTip& tip, int threads) {
   Grid<float> out(scan.width(), scan.height(), -infinity);
   parallel_for(static_cast<std::size_t>(scan.height()), threads, [&](std::size_t row, int) {
     const int y = static_cast<int>(row);
     float four[together];
     for (int j = 0; j < tip.height; ++j)
       for (int i = 0; i < tip.width; i += together) {
-        offsets(i, j, 1, four);
+        offsets(tip, i, j, 1, four);
         HWY_DYNAMIC_DISPATCH(raise_to)
-        (&out(0, y), &apex(together - (i - tip.apex_x) + left, y - (j - tip.apex_y) + below), four,
+        (&out(0, y), apex.data() + scan.offset(-(i - tip.apex_x), y - (j - tip.apex_y)), four,
          scan.width());
       }
   });
