@@ -11,7 +11,6 @@
 #ifndef SEMSURF_TIP_CARVER_WORK
 #define SEMSURF_TIP_CARVER_WORK
 namespace surf {
-namespace {
 
 /// One point of a scan, and space to work in.
 struct CarverWork {
@@ -22,18 +21,18 @@ struct CarverWork {
   float here, tolerance;
   int width, rows, stride, apex_x, apex_y;
   float* limits;
+  // Lists of vectors of samples: numbers, and where the vector begins.
   float* ways;
-  std::int32_t *shifts, *pending, *places;
+  std::int32_t* shifts;  ///< in the scan
+  float* open;
+  std::int32_t *places, *samples;  ///< in the scan and in the tip
 };
 
-}  // namespace
 }  // namespace surf
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace surf {
-namespace {
-namespace HWY_NAMESPACE {
+namespace surf::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 constexpr hn::CappedTag<float, 16> floats;
@@ -41,7 +40,7 @@ constexpr hn::RebindToSigned<decltype(floats)> ints;
 constexpr int lanes = static_cast<int>(hn::MaxLanes(floats));
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-/// Finds the samples that can touch the point: those with scan + tip - here >= -tolerance. Keeps
+/// Finds the samples that can touch the point: those with scan + tip - here >= -tolerance. Lists
 /// vectors that hold one, as tip - here, and -infinity for the other samples. Returns the number of
 /// vectors. The scan meets the tip's rows downwards.
 HWY_INLINE int find_ways(const CarverWork& w) {
@@ -53,10 +52,11 @@ HWY_INLINE int find_ways(const CarverWork& w) {
       const auto shift = static_cast<std::int32_t>(i - j * w.scan_stride);
       const auto way = hn::Sub(hn::LoadU(floats, w.mirrored + j * w.stride + i), here);
       const auto touches = hn::Ge(hn::Add(hn::LoadU(floats, first + shift), way), lowest);
-      if (hn::AllFalse(floats, touches)) continue;
+      // Written even if it does not count, because a branch here is hard to predict.
       hn::StoreU(hn::IfThenElse(touches, way, hn::Set(floats, -infinity)), floats,
                  w.ways + count * lanes);
-      w.shifts[count++] = shift;
+      w.shifts[count] = shift;
+      count += !hn::AllFalse(floats, touches);
     }
   return count;
 }
@@ -73,8 +73,8 @@ HWY_INLINE Way best_way(const CarverWork& w, int count, const float* z) {
   auto most = hn::Set(floats, -infinity);
   auto at = hn::Zero(ints);
   for (int n = 0; n < count; ++n) {
-    const auto sum =
-        hn::Add(hn::LoadU(floats, z + w.shifts[n]), hn::LoadU(floats, w.ways + n * lanes));
+    const auto way = hn::LoadU(floats, w.ways + n * lanes);
+    const auto sum = hn::Add(hn::LoadU(floats, z + w.shifts[n]), way);
     const auto more = hn::Gt(sum, most);  // not for infinity - infinity
     most = hn::IfThenElse(more, sum, most);
     at = hn::IfThenElse(hn::RebindMask(ints, more), hn::Set(ints, n), at);
@@ -91,59 +91,74 @@ HWY_INLINE Way best_way(const CarverWork& w, int count, const float* z) {
 
 /// The scan's heights that the tip's samples meet if the tip touches this way.
 HWY_INLINE const float* met(const CarverWork& w, const Way& way) {
-  // shift = column - row * stride with the column of the mirrored sample.
   return w.scan - (w.width - 1) + way.shift;
 }
 
-/// Lists the samples that the way does not allow the height of their limit.
-HWY_INLINE int find_pending(const CarverWork& w, const Way& way) {
+/// Lists vectors of samples of which the way does not allow all their limits: these limits, and
+/// -infinity for the other samples. Returns the number of vectors.
+HWY_INLINE int find_open(const CarverWork& w, const Way& way) {
   const auto offset = hn::Set(floats, way.offset);
-  const float* z = met(w, way);
+  const float* const z = met(w, way);
   int count = 0;
-  for (int j = 0; j < w.rows; ++j, z += w.scan_stride)
+  for (int j = 0; j < w.rows; ++j)
     for (int i = 0; i < w.stride; i += lanes) {
-      const int k = j * w.stride + i;
-      const auto allowed = hn::Add(hn::LoadU(floats, z + i), offset);
-      const auto lower = hn::Lt(allowed, hn::LoadU(floats, w.limits + k));
-      if (hn::AllFalse(floats, lower)) continue;
-      const auto mask = hn::RebindMask(ints, lower);
-      hn::CompressStore(hn::Iota(ints, static_cast<std::int32_t>(j * w.scan_stride + i)), mask,
-                        ints, w.places + count);
-      count +=
-          static_cast<int>(hn::CompressStore(hn::Iota(ints, k), mask, ints, w.pending + count));
+      const auto place = static_cast<std::int32_t>(j * w.scan_stride + i);
+      const auto limit = hn::LoadU(floats, w.limits + j * w.stride + i);
+      const auto lower = hn::Lt(hn::Add(hn::LoadU(floats, z + place), offset), limit);
+      hn::StoreU(hn::IfThenElse(lower, limit, hn::Set(floats, -infinity)), floats,
+                 w.open + count * lanes);
+      w.places[count] = place;
+      w.samples[count] = j * w.stride + i;
+      count += !hn::AllFalse(floats, lower);
     }
   return count;
 }
 
-/// Any way that touches bounds the demand from below, so only the samples matter that the first way
-/// does not allow their limit. For each of these the best way decides. It often allows others, too.
+/// Leaves out of this list what the way allows.
+HWY_INLINE int still_open(const CarverWork& w, int count, const Way& way) {
+  const auto offset = hn::Set(floats, way.offset);
+  const float* const z = met(w, way);
+  int left = 0;
+  for (int n = 0; n < count; ++n) {
+    const std::int32_t place = w.places[n], sample = w.samples[n];
+    const auto limit = hn::LoadU(floats, w.open + n * lanes);
+    const auto lower = hn::Lt(hn::Add(hn::LoadU(floats, z + place), offset), limit);
+    hn::StoreU(hn::IfThenElse(lower, limit, hn::Set(floats, -infinity)), floats,
+               w.open + left * lanes);
+    w.places[left] = place;
+    w.samples[left] = sample;
+    left += !hn::AllFalse(floats, lower);
+  }
+  return left;
+}
+
+/// Each way bounds from below what the point allows, so all samples but those are done that the
+/// first way does not allow their limit. The way that allows such a sample the most decides about
+/// it, and mostly allows others their limit, too.
 void carve(const CarverWork& w) {
   const int ways = find_ways(w);
   if (ways == 0) return;
-  const Way first = best_way(w, ways, w.apex + w.apex_y * w.scan_stride + w.apex_x - (w.width - 1));
-  int pending = find_pending(w, first);
-  while (pending > 0) {
-    const std::int32_t k = w.pending[pending - 1];
-    const Way best = best_way(w, ways, w.scan - (w.width - 1) + w.places[pending - 1]);
-    if (best.sum < w.limits[k]) {
-      w.limits[k] = best.sum;
-      --pending;
+  int open =
+      find_open(w, best_way(w, ways, w.apex + w.apex_y * w.scan_stride + w.apex_x - (w.width - 1)));
+  while (open > 0) {
+    float* const last = w.open + (open - 1) * lanes;
+    int l = 0;
+    while (l < lanes && !(last[l] > -infinity)) ++l;
+    if (l == lanes) {
+      --open;
       continue;
     }
-    const float* const z = met(w, best);
-    int left = 0;
-    for (int n = 0; n < pending; ++n)
-      if (z[w.places[n]] + best.offset < w.limits[w.pending[n]]) {
-        w.places[left] = w.places[n];
-        w.pending[left++] = w.pending[n];
-      }
-    pending = left;
+    const Way best = best_way(w, ways, w.scan - (w.width - 1) + w.places[open - 1] + l);
+    if (best.sum < last[l]) {
+      w.limits[w.samples[open - 1] + l] = best.sum;
+      last[l] = -infinity;
+    } else {
+      open = still_open(w, open, best);
+    }
   }
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace
-}  // namespace surf
+}  // namespace surf::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
@@ -176,11 +191,9 @@ void TipCarver::begin(const CarvedTip& tip) {
   const std::size_t count = tip.z.size();
   limits_.resize(count);
   for (std::size_t k = 0; k < count; ++k) limits_[k] = tip.z[k] - tip.threshold[k];
-  // Vectors are stored whole.
-  ways_.resize(count);
-  shifts_.resize(count);
-  pending_.resize(count + lanes);
-  places_.resize(count + lanes);
+  ways_.resize(count + lanes);  // a vector is written before it is known whether it counts
+  open_.resize(count + lanes);
+  for (auto* list : {&shifts_, &places_, &samples_}) list->resize(count + 1);
 }
 
 void TipCarver::carve(const CarvedScan& scan, const std::vector<float>& apex, int x, int y,
@@ -188,7 +201,8 @@ void TipCarver::carve(const CarvedScan& scan, const std::vector<float>& apex, in
   HWY_DYNAMIC_DISPATCH(carve)
   ({tip.mirrored.data(), scan.top(x, y), apex.data() + scan.offset(x, y), scan.stride(),
     scan.bottom(x, y), tip.apex_tolerance, tip.width, tip.height, tip.stride, tip.apex_x,
-    tip.apex_y, limits_.data(), ways_.data(), shifts_.data(), pending_.data(), places_.data()});
+    tip.apex_y, limits_.data(), ways_.data(), shifts_.data(), open_.data(), places_.data(),
+    samples_.data()});
 }
 
 }  // namespace surf

@@ -73,9 +73,9 @@ class TipCarver {
 
  private:
   std::vector<float> limits_;
-  std::vector<float> ways_;           // vectors of samples of which at least one can touch
-  std::vector<std::int32_t> shifts_;  // of those vectors in the scan
-  std::vector<std::int32_t> pending_, places_;  // samples to decide, and their place in the scan
+  // Lists of vectors of samples; see the source.
+  std::vector<float> ways_, open_;
+  std::vector<std::int32_t> shifts_, places_, samples_;
 };
 
 }  // namespace surf
