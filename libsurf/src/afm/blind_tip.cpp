@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -76,7 +77,7 @@ CarvedTip prepared(const BlindTipOptions& o, float slack_nm) {
   tip.stride = (o.width + 15) / 16 * 16;
   const auto count = static_cast<std::size_t>(tip.stride * tip.height);
   tip.z.assign(count, -std::numeric_limits<float>::infinity());
-  tip.mirrored = tip.z;
+  tip.mirrored.assign(count, -std::numeric_limits<float>::infinity());
   tip.threshold.assign(count, 0);
   const double along_y = o.threshold_y_nm.value_or(o.threshold_nm);
   for (int j = 0; j < tip.height; ++j)
@@ -101,6 +102,15 @@ bool is_local_maximum(const Grid<float>& z, int x, int y) {
       lower += z(x + i, y + j) < z(x, y);
     }
   return lower >= 2;
+}
+
+// Sorts points so that successive ones share what the processor's caches hold of the scan.
+template <class Iterator>
+void by_neighbourhood(Iterator begin, Iterator end) {
+  constexpr int wide = 64;
+  std::sort(begin, end, [](const Point& a, const Point& b) {
+    return std::tuple(a.scan, a.x / wide, a.y, a.x) < std::tuple(b.scan, b.x / wide, b.y, b.x);
+  });
 }
 
 class Reconstruction {
@@ -156,13 +166,15 @@ class Reconstruction {
 
   // Carves by batches of points that all see the same tip, so that the result does not depend on
   // the number of threads. Returns true if the tip has changed by more than rounding.
-  bool carve(const std::vector<Point>& all) {
+  bool carve(std::vector<Point>& all) {
     constexpr std::size_t batch = 1024, share = 16;
     bool changed = false;
     for (std::size_t first = 0; first < all.size(); first += batch) {
       options_.watch.check();
       const std::size_t last = std::min(all.size(), first + batch);
       for (TipCarver& carver : carvers_) carver.begin(tip_);
+      by_neighbourhood(all.begin() + static_cast<std::ptrdiff_t>(first),
+                       all.begin() + static_cast<std::ptrdiff_t>(last));
       parallel_for((last - first + share - 1) / share, threads_, [&](std::size_t unit, int worker) {
         const auto w = static_cast<std::size_t>(worker);
         for (std::size_t p = first + unit * share; p < std::min(last, first + (unit + 1) * share);

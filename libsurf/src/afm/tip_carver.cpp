@@ -44,19 +44,23 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 /// vectors that hold one, as tip - here, and -infinity for the other samples. Returns the number of
 /// vectors. The scan meets the tip's rows downwards.
 HWY_INLINE int find_ways(const CarverWork& w) {
-  const auto here = hn::Set(floats, w.here), lowest = hn::Set(floats, -w.tolerance);
+  const auto here = hn::Set(floats, w.here), lowest = hn::Set(floats, -w.tolerance),
+             none = hn::Set(floats, -infinity);
   const float* const first = w.scan + w.apex_y * w.scan_stride + w.apex_x - (w.width - 1);
+  const float* tip = w.mirrored;
+  // Copies of the pointers, because numbers that are written might change the originals.
+  float* const ways = w.ways;
+  std::int32_t* const shifts = w.shifts;
+  const int rows = w.rows, stride = w.stride, down = static_cast<int>(w.scan_stride);
   int count = 0;
-  for (int j = 0; j < w.rows; ++j)
-    for (int i = 0; i < w.stride; i += lanes) {
-      const auto shift = static_cast<std::int32_t>(i - j * w.scan_stride);
-      const auto way = hn::Sub(hn::LoadU(floats, w.mirrored + j * w.stride + i), here);
+  for (int j = 0; j < rows; ++j, tip += stride)
+    for (int i = 0; i < stride; i += lanes) {
+      const std::int32_t shift = i - j * down;
+      const auto way = hn::Sub(hn::Load(floats, tip + i), here);
       const auto touches = hn::Ge(hn::Add(hn::LoadU(floats, first + shift), way), lowest);
-      // Written even if it does not count, because a branch here is hard to predict.
-      hn::StoreU(hn::IfThenElse(touches, way, hn::Set(floats, -infinity)), floats,
-                 w.ways + count * lanes);
-      w.shifts[count] = shift;
-      count += !hn::AllFalse(floats, touches);
+      if (hn::AllFalse(floats, touches)) continue;
+      hn::Store(hn::IfThenElse(touches, way, none), floats, ways + count * lanes);
+      shifts[count++] = shift;
     }
   return count;
 }
@@ -73,20 +77,18 @@ HWY_INLINE Way best_way(const CarverWork& w, int count, const float* z) {
   auto most = hn::Set(floats, -infinity);
   auto at = hn::Zero(ints);
   for (int n = 0; n < count; ++n) {
-    const auto way = hn::LoadU(floats, w.ways + n * lanes);
+    const auto way = hn::Load(floats, w.ways + n * lanes);
     const auto sum = hn::Add(hn::LoadU(floats, z + w.shifts[n]), way);
     const auto more = hn::Gt(sum, most);  // not for infinity - infinity
     most = hn::IfThenElse(more, sum, most);
     at = hn::IfThenElse(hn::RebindMask(ints, more), hn::Set(ints, n), at);
   }
-  float sums[lanes];
+  const float sum = hn::GetLane(hn::MaxOfLanes(floats, most));
+  const auto l = hn::FindFirstTrue(floats, hn::Eq(most, hn::Set(floats, sum)));
   std::int32_t vectors[lanes];
-  hn::StoreU(most, floats, sums);
   hn::StoreU(at, ints, vectors);
-  int best = 0;
-  for (int l = 1; l < lanes; ++l)
-    if (sums[l] > sums[best]) best = l;
-  return {sums[best], w.ways[vectors[best] * lanes + best], w.shifts[vectors[best]] + best};
+  const int lane = static_cast<int>(l);
+  return {sum, w.ways[vectors[lane] * lanes + lane], w.shifts[vectors[lane]] + lane};
 }
 
 /// The scan's heights that the tip's samples meet if the tip touches this way.
@@ -97,36 +99,41 @@ HWY_INLINE const float* met(const CarverWork& w, const Way& way) {
 /// Lists vectors of samples of which the way does not allow all their limits: these limits, and
 /// -infinity for the other samples. Returns the number of vectors.
 HWY_INLINE int find_open(const CarverWork& w, const Way& way) {
-  const auto offset = hn::Set(floats, way.offset);
+  const auto offset = hn::Set(floats, way.offset), none = hn::Set(floats, -infinity);
   const float* const z = met(w, way);
+  const int rows = w.rows, stride = w.stride, up = static_cast<int>(w.scan_stride);
+  const float* const limits = w.limits;
+  float* const open = w.open;
+  std::int32_t *const places = w.places, *const samples = w.samples;
   int count = 0;
-  for (int j = 0; j < w.rows; ++j)
-    for (int i = 0; i < w.stride; i += lanes) {
-      const auto place = static_cast<std::int32_t>(j * w.scan_stride + i);
-      const auto limit = hn::LoadU(floats, w.limits + j * w.stride + i);
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < stride; i += lanes) {
+      const std::int32_t place = j * up + i, sample = j * stride + i;
+      const auto limit = hn::Load(floats, limits + sample);
       const auto lower = hn::Lt(hn::Add(hn::LoadU(floats, z + place), offset), limit);
-      hn::StoreU(hn::IfThenElse(lower, limit, hn::Set(floats, -infinity)), floats,
-                 w.open + count * lanes);
-      w.places[count] = place;
-      w.samples[count] = j * w.stride + i;
-      count += !hn::AllFalse(floats, lower);
+      if (hn::AllFalse(floats, lower)) continue;
+      hn::Store(hn::IfThenElse(lower, limit, none), floats, open + count * lanes);
+      places[count] = place;
+      samples[count++] = sample;
     }
   return count;
 }
 
 /// Leaves out of this list what the way allows.
 HWY_INLINE int still_open(const CarverWork& w, int count, const Way& way) {
-  const auto offset = hn::Set(floats, way.offset);
+  const auto offset = hn::Set(floats, way.offset), none = hn::Set(floats, -infinity);
   const float* const z = met(w, way);
+  float* const open = w.open;
+  std::int32_t *const places = w.places, *const samples = w.samples;
   int left = 0;
   for (int n = 0; n < count; ++n) {
-    const std::int32_t place = w.places[n], sample = w.samples[n];
-    const auto limit = hn::LoadU(floats, w.open + n * lanes);
+    const std::int32_t place = places[n], sample = samples[n];
+    const auto limit = hn::Load(floats, open + n * lanes);
     const auto lower = hn::Lt(hn::Add(hn::LoadU(floats, z + place), offset), limit);
-    hn::StoreU(hn::IfThenElse(lower, limit, hn::Set(floats, -infinity)), floats,
-               w.open + left * lanes);
-    w.places[left] = place;
-    w.samples[left] = sample;
+    // Written even if it does not count, because a branch here is hard to predict.
+    hn::Store(hn::IfThenElse(lower, limit, none), floats, open + left * lanes);
+    places[left] = place;
+    samples[left] = sample;
     left += !hn::AllFalse(floats, lower);
   }
   return left;
@@ -191,9 +198,9 @@ void TipCarver::begin(const CarvedTip& tip) {
   const std::size_t count = tip.z.size();
   limits_.resize(count);
   for (std::size_t k = 0; k < count; ++k) limits_[k] = tip.z[k] - tip.threshold[k];
-  ways_.resize(count + lanes);  // a vector is written before it is known whether it counts
-  open_.resize(count + lanes);
-  for (auto* list : {&shifts_, &places_, &samples_}) list->resize(count + 1);
+  ways_.resize(count);
+  open_.resize(count);
+  for (auto* list : {&shifts_, &places_, &samples_}) list->resize(count);
 }
 
 void TipCarver::carve(const CarvedScan& scan, const std::vector<float>& apex, int x, int y,

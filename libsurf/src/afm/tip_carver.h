@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/aligned.h"
 #include "surf/core/grid.h"
 
 namespace surf {
@@ -42,7 +43,7 @@ struct CarvedTip {
   int stride = 0;                   ///< a multiple of 16
   std::vector<float> z, threshold;  ///< a sample is lowered only by more than its threshold
   /// z with each row reversed, which is the order of the scan's samples at contact.
-  std::vector<float> mirrored;
+  AlignedVector<float> mirrored;
   float apex_tolerance = 0;
 
   /// Sets sample k = row * stride + column.
@@ -69,12 +70,12 @@ class TipCarver {
 
   /// The least height that the points since `begin` allow each sample, laid out like the samples;
   /// the sample's height less its threshold where all of them allow that.
-  const std::vector<float>& limits() const { return limits_; }
+  const AlignedVector<float>& limits() const { return limits_; }
 
  private:
-  std::vector<float> limits_;
+  AlignedVector<float> limits_;
   // Lists of vectors of samples; see the source.
-  std::vector<float> ways_, open_;
+  AlignedVector<float> ways_, open_;
   std::vector<std::int32_t> shifts_, places_, samples_;
 };
 

@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
+#include "core/aligned.h"
 #include "facet_operations.h"
-#include "sem/model/aligned.h"
 #include "surf/core/edge.h"
 #include "surf/core/grid.h"
 #include "surf/sem/filter_bank.h"

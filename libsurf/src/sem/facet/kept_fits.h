@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/aligned.h"
 #include "sem/facet/facet_operations.h"
 #include "sem/facet/facet_pass.h"
-#include "sem/model/aligned.h"
 
 namespace surf::facet {
 
