@@ -180,7 +180,7 @@ constexpr int lanes = 16;  // of the widest vectors
 }  // namespace
 
 CarvedScan::CarvedScan(const Grid<float>& heights, double layer, int tip_width, int tip_height)
-    : width_(heights.width()), height_(heights.height()), margin_x_(tip_width + lanes),
+    : width_(heights.width()), height_(heights.height()), margin_x_(tip_width + 2 * lanes),
       margin_y_(tip_height), stride_(width_ + 2 * margin_x_) {
   top_.assign(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height_ + 2 * margin_y_),
               infinity);

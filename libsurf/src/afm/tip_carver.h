@@ -27,6 +27,7 @@ class CarvedScan {
   std::ptrdiff_t stride() const { return stride_; }
   /// For arrays that are laid out like the scan: their size, and the place of (x, y).
   std::size_t size() const { return top_.size(); }
+  const float* tops() const { return top_.data(); }
   std::size_t offset(int x, int y) const {
     return static_cast<std::size_t>((y + margin_y_) * stride_ + x + margin_x_);
   }
