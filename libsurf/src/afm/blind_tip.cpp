@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -76,7 +77,7 @@ CarvedTip prepared(const BlindTipOptions& o, float slack_nm) {
   tip.stride = (o.width + 15) / 16 * 16;
   const auto count = static_cast<std::size_t>(tip.stride * tip.height);
   tip.z.assign(count, -std::numeric_limits<float>::infinity());
-  tip.mirrored = tip.z;
+  tip.mirrored.assign(count, -std::numeric_limits<float>::infinity());
   tip.threshold.assign(count, 0);
   const double along_y = o.threshold_y_nm.value_or(o.threshold_nm);
   for (int j = 0; j < tip.height; ++j)
@@ -103,16 +104,26 @@ bool is_local_maximum(const Grid<float>& z, int x, int y) {
   return lower >= 2;
 }
 
+// Sorts points so that successive ones share what the processor's caches hold of the scan.
+template <class Iterator>
+void by_neighbourhood(Iterator begin, Iterator end) {
+  constexpr int wide = 64;
+  std::sort(begin, end, [](const Point& a, const Point& b) {
+    return std::tuple(a.scan, a.x / wide, a.y, a.x) < std::tuple(b.scan, b.x / wide, b.y, b.x);
+  });
+}
+
 class Reconstruction {
  public:
   Reconstruction(const std::vector<HeightField>& scans, const BlindTipOptions& options,
                  BlindTipSummary& summary)
       : options_(options), summary_(summary), heights_(rebased(scans, slack_nm_)),
         tip_(prepared(options, slack_nm_)), threads_(resolve_threads(options.threads)),
-        carvers_(static_cast<std::size_t>(threads_)), demands_(static_cast<std::size_t>(threads_)) {
+        carvers_(static_cast<std::size_t>(threads_)) {
     for (const Grid<float>& z : heights_) {
       scans_.emplace_back(z, options.layer_nm, options.width, options.height);
       tried_.emplace_back(z.width(), z.height());
+      apex_.emplace_back();
     }
   }
 
@@ -131,13 +142,14 @@ class Reconstruction {
 
  private:
   // The points that the tip cannot have made, the worst first; for maxima, the highest first.
-  std::vector<Point> points(bool maxima) const {
+  std::vector<Point> points(bool maxima) {
     std::vector<Point> out;
     for (std::size_t s = 0; s < scans_.size(); ++s) {
       const CarvedScan& scan = scans_[s];
       const int dx = options_.border ? 1 : tip_.width - 1,
                 dy = options_.border ? 1 : tip_.height - 1;
-      const Grid<float> made = explained_height(scan, tip_, threads_);
+      apex_[s] = apex_heights(scan, tip_, threads_);
+      const Grid<float> made = explained_height(scan, apex_[s], tip_, threads_);
       for (int y = dy; y < scan.height() - dy; ++y)
         for (int x = dx; x < scan.width() - dx; ++x) {
           const float z = scan.bottom(x, y);
@@ -154,32 +166,44 @@ class Reconstruction {
 
   // Carves by batches of points that all see the same tip, so that the result does not depend on
   // the number of threads. Returns true if the tip has changed by more than rounding.
-  bool carve(const std::vector<Point>& all) {
+  bool carve(std::vector<Point>& all) {
     constexpr std::size_t batch = 1024, share = 16;
     bool changed = false;
     for (std::size_t first = 0; first < all.size(); first += batch) {
       options_.watch.check();
       const std::size_t last = std::min(all.size(), first + batch);
-      for (auto& d : demands_) d.assign(tip_.z.size(), std::numeric_limits<float>::infinity());
+      for (TipCarver& carver : carvers_) carver.begin(tip_);
+      by_neighbourhood(all.begin() + static_cast<std::ptrdiff_t>(first),
+                       all.begin() + static_cast<std::ptrdiff_t>(last));
       parallel_for((last - first + share - 1) / share, threads_, [&](std::size_t unit, int worker) {
         const auto w = static_cast<std::size_t>(worker);
         for (std::size_t p = first + unit * share; p < std::min(last, first + (unit + 1) * share);
              ++p)
-          carvers_[w].carve(scans_[all[p].scan], all[p].x, all[p].y, tip_, demands_[w]);
+          carvers_[w].carve(scans_[all[p].scan], apex_[all[p].scan], all[p].x, all[p].y, tip_);
       });
       summary_.points += static_cast<std::int64_t>(last - first);
       for (std::size_t p = first; p < last; ++p) tried_[all[p].scan](all[p].x, all[p].y) = version_;
-      bool lowered = false;
-      for (const auto& demand : demands_)
-        for (std::size_t k = 0; k < demand.size(); ++k)
-          if (demand[k] < tip_.z[k]) {
-            tip_.lower(k, demand[k]);
-            lowered = true;
-          }
+      const bool lowered = lower_tip();
       version_ += lowered;
       changed = changed || lowered;
     }
     return changed;
+  }
+
+  // Lowers the tip to what the last batch allows, and returns whether that has changed it.
+  bool lower_tip() {
+    bool lowered = false;
+    std::vector<float> target = tip_.z;
+    for (const TipCarver& carver : carvers_)
+      for (std::size_t k = 0; k < target.size(); ++k)
+        if (carver.limits()[k] < tip_.z[k] - tip_.threshold[k])
+          target[k] = std::min(target[k], carver.limits()[k] + tip_.threshold[k]);
+    for (std::size_t k = 0; k < target.size(); ++k)
+      if (target[k] < tip_.z[k]) {
+        tip_.lower(k, target[k]);
+        lowered = true;
+      }
+    return lowered;
   }
 
   const BlindTipOptions& options_;
@@ -192,7 +216,7 @@ class Reconstruction {
   std::vector<Grid<int>> tried_;  // tip version that each point was tried with last
   int threads_;
   std::vector<TipCarver> carvers_;
-  std::vector<std::vector<float>> demands_;  // per worker
+  std::vector<std::vector<float>> apex_;  // of each scan, by the tip of the last `points`
 };
 
 }  // namespace

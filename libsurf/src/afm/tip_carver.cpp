@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tip_carver.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -9,93 +8,161 @@
 #define HWY_TARGET_INCLUDE "afm/tip_carver.cpp"
 #include "core/each_target.h"
 
-// Loops over rows of 16 floats, the number that the widest vectors hold.
+#ifndef SEMSURF_TIP_CARVER_WORK
+#define SEMSURF_TIP_CARVER_WORK
+namespace surf {
+
+/// One point of a scan, and space to work in.
+struct CarverWork {
+  const float* mirrored;  ///< samples of the tip, each row reversed
+  const float* scan;      ///< where the point lies
+  const float* apex;      ///< the same place in the heights of the apex
+  std::ptrdiff_t scan_stride;
+  float here, tolerance;
+  int width, rows, stride, apex_x, apex_y;
+  float* limits;
+  // Lists of vectors of samples: numbers, and where the vector begins.
+  float* ways;
+  std::int32_t* shifts;  ///< in the scan
+  float* open;
+  std::int32_t *places, *samples;  ///< in the scan and in the tip
+};
+
+}  // namespace surf
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace surf::HWY_NAMESPACE {
 
+namespace hn = hwy::HWY_NAMESPACE;
+constexpr hn::CappedTag<float, 16> floats;
+constexpr hn::RebindToSigned<decltype(floats)> ints;
+constexpr int lanes = static_cast<int>(hn::MaxLanes(floats));
 constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr int lanes = 16;  // of the widest vectors
 
-float largest(const float* of_lanes) { return *std::max_element(of_lanes, of_lanes + lanes); }
-
-// allowed = max(allowed, scan + offset).
-void allow(float* __restrict allowed, const float* __restrict scan, float offset, int rows,
-           int stride, std::ptrdiff_t scan_stride) {
-  for (int j = 0; j < rows; ++j, allowed += stride, scan += scan_stride)
-    for (int i = 0; i < stride; ++i) {
-      const float v = scan[i] + offset;
-      allowed[i] = v > allowed[i] ? v : allowed[i];
-    }
-}
-
-// The largest of tip - threshold - allowed.
-float excess(const float* __restrict tip, const float* __restrict threshold,
-             const float* __restrict allowed, int count) {
-  float most[lanes];
-  for (float& m : most) m = -infinity;
-  for (int k = 0; k < count; k += lanes)
-    for (int l = 0; l < lanes; ++l) {
-      const float v = tip[k + l] - threshold[k + l] - allowed[k + l];
-      most[l] = v > most[l] ? v : most[l];  // ignores NaN
-    }
-  return largest(most);
-}
-
-// The position of the largest tip - threshold - allowed.
-int place_of_excess(const float* __restrict tip, const float* __restrict threshold,
-                    const float* __restrict allowed, float value) {
-  for (int k = 0;; k += lanes) {
-    int equal = 0;
-    for (int l = 0; l < lanes; ++l)
-      equal += tip[k + l] - threshold[k + l] - allowed[k + l] == value;
-    if (equal == 0) continue;
-    while (!(tip[k] - threshold[k] - allowed[k] == value)) ++k;
-    return k;
-  }
-}
-
-// ways = tip - here if scan + tip - here >= -tolerance, else -infinity. Rows of the scan are read
-// downwards.
-void find(float* __restrict ways, const float* __restrict tip, const float* __restrict scan,
-          float here, float tolerance, int rows, int stride, std::ptrdiff_t scan_stride) {
-  for (int j = 0; j < rows; ++j, ways += stride, tip += stride, scan -= scan_stride)
-    for (int i = 0; i < stride; ++i) {
-      const float offset = tip[i] - here;
-      ways[i] = scan[i] + offset >= -tolerance ? offset : -infinity;
-    }
-}
-
-int number_of(const float* ways, int count) {
-  int number = 0;
-  for (int k = 0; k < count; ++k) number += ways[k] > -infinity;
-  return number;
-}
-
-// The largest of ways + scan.
-float best_of(const float* __restrict ways, const float* __restrict scan, int rows, int stride,
-              std::ptrdiff_t scan_stride) {
-  float most[lanes];
-  for (float& m : most) m = -infinity;
-  for (int j = 0; j < rows; ++j, ways += stride, scan -= scan_stride)
-    for (int k = 0; k < stride; k += lanes)
-      for (int l = 0; l < lanes; ++l) {
-        const float v = scan[k + l] + ways[k + l];
-        most[l] = v > most[l] ? v : most[l];  // ignores NaN
-      }
-  return largest(most);
-}
-
-// The position of that maximum.
-int place_of_best(const float* __restrict ways, const float* __restrict scan, int stride,
-                  std::ptrdiff_t scan_stride, float value) {
-  for (int first = 0;; first += stride, scan -= scan_stride)
+/// Finds the samples that can touch the point: those with scan + tip - here >= -tolerance. Lists
+/// vectors that hold one, as tip - here, and -infinity for the other samples. Returns the number of
+/// vectors. The scan meets the tip's rows downwards.
+HWY_INLINE int find_ways(const CarverWork& w) {
+  const auto here = hn::Set(floats, w.here), lowest = hn::Set(floats, -w.tolerance),
+             none = hn::Set(floats, -infinity);
+  const float* const first = w.scan + w.apex_y * w.scan_stride + w.apex_x - (w.width - 1);
+  const float* tip = w.mirrored;
+  // Copies of the pointers, because numbers that are written might change the originals.
+  float* const ways = w.ways;
+  std::int32_t* const shifts = w.shifts;
+  const int rows = w.rows, stride = w.stride, down = static_cast<int>(w.scan_stride);
+  int count = 0;
+  for (int j = 0; j < rows; ++j, tip += stride)
     for (int i = 0; i < stride; i += lanes) {
-      int equal = 0;
-      for (int l = 0; l < lanes; ++l) equal += scan[i + l] + ways[first + i + l] == value;
-      if (equal == 0) continue;
-      while (!(scan[i] + ways[first + i] == value)) ++i;
-      return first + i;
+      const std::int32_t shift = i - j * down;
+      const auto way = hn::Sub(hn::Load(floats, tip + i), here);
+      const auto touches = hn::Ge(hn::Add(hn::LoadU(floats, first + shift), way), lowest);
+      if (hn::AllFalse(floats, touches)) continue;
+      hn::Store(hn::IfThenElse(touches, way, none), floats, ways + count * lanes);
+      shifts[count++] = shift;
     }
+  return count;
+}
+
+struct Way {
+  float sum;  ///< the largest of way + z
+  float offset;
+  std::int32_t shift;
+};
+
+/// The way with the largest sum of way and height, for heights that the sample (0, 0) of the
+/// mirrored tip meets at z.
+HWY_INLINE Way best_way(const CarverWork& w, int count, const float* z) {
+  auto most = hn::Set(floats, -infinity);
+  auto at = hn::Zero(ints);
+  for (int n = 0; n < count; ++n) {
+    const auto way = hn::Load(floats, w.ways + n * lanes);
+    const auto sum = hn::Add(hn::LoadU(floats, z + w.shifts[n]), way);
+    const auto more = hn::Gt(sum, most);  // not for infinity - infinity
+    most = hn::IfThenElse(more, sum, most);
+    at = hn::IfThenElse(hn::RebindMask(ints, more), hn::Set(ints, n), at);
+  }
+  const float sum = hn::GetLane(hn::MaxOfLanes(floats, most));
+  const auto l = hn::FindFirstTrue(floats, hn::Eq(most, hn::Set(floats, sum)));
+  std::int32_t vectors[lanes];
+  hn::StoreU(at, ints, vectors);
+  const int lane = static_cast<int>(l);
+  return {sum, w.ways[vectors[lane] * lanes + lane], w.shifts[vectors[lane]] + lane};
+}
+
+/// The scan's heights that the tip's samples meet if the tip touches this way.
+HWY_INLINE const float* met(const CarverWork& w, const Way& way) {
+  return w.scan - (w.width - 1) + way.shift;
+}
+
+/// Lists vectors of samples of which the way does not allow all their limits: these limits, and
+/// -infinity for the other samples. Returns the number of vectors.
+HWY_INLINE int find_open(const CarverWork& w, const Way& way) {
+  const auto offset = hn::Set(floats, way.offset), none = hn::Set(floats, -infinity);
+  const float* const z = met(w, way);
+  const int rows = w.rows, stride = w.stride, up = static_cast<int>(w.scan_stride);
+  const float* const limits = w.limits;
+  float* const open = w.open;
+  std::int32_t *const places = w.places, *const samples = w.samples;
+  int count = 0;
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < stride; i += lanes) {
+      const std::int32_t place = j * up + i, sample = j * stride + i;
+      const auto limit = hn::Load(floats, limits + sample);
+      const auto lower = hn::Lt(hn::Add(hn::LoadU(floats, z + place), offset), limit);
+      if (hn::AllFalse(floats, lower)) continue;
+      hn::Store(hn::IfThenElse(lower, limit, none), floats, open + count * lanes);
+      places[count] = place;
+      samples[count++] = sample;
+    }
+  return count;
+}
+
+/// Leaves out of this list what the way allows.
+HWY_INLINE int still_open(const CarverWork& w, int count, const Way& way) {
+  const auto offset = hn::Set(floats, way.offset), none = hn::Set(floats, -infinity);
+  const float* const z = met(w, way);
+  float* const open = w.open;
+  std::int32_t *const places = w.places, *const samples = w.samples;
+  int left = 0;
+  for (int n = 0; n < count; ++n) {
+    const std::int32_t place = places[n], sample = samples[n];
+    const auto limit = hn::Load(floats, open + n * lanes);
+    const auto lower = hn::Lt(hn::Add(hn::LoadU(floats, z + place), offset), limit);
+    // Written even if it does not count, because a branch here is hard to predict.
+    hn::Store(hn::IfThenElse(lower, limit, none), floats, open + left * lanes);
+    places[left] = place;
+    samples[left] = sample;
+    left += !hn::AllFalse(floats, lower);
+  }
+  return left;
+}
+
+/// Each way bounds from below what the point allows, so all samples but those are done that the
+/// first way does not allow their limit. The way that allows such a sample the most decides about
+/// it, and mostly allows others their limit, too.
+void carve(const CarverWork& w) {
+  const int ways = find_ways(w);
+  if (ways == 0) return;
+  int open =
+      find_open(w, best_way(w, ways, w.apex + w.apex_y * w.scan_stride + w.apex_x - (w.width - 1)));
+  while (open > 0) {
+    float* const last = w.open + (open - 1) * lanes;
+    int l = 0;
+    while (l < lanes && !(last[l] > -infinity)) ++l;
+    if (l == lanes) {
+      --open;
+      continue;
+    }
+    const Way best = best_way(w, ways, w.scan - (w.width - 1) + w.places[open - 1] + l);
+    if (best.sum < last[l]) {
+      w.limits[w.samples[open - 1] + l] = best.sum;
+      last[l] = -infinity;
+    } else {
+      open = still_open(w, open, best);
+    }
+  }
 }
 
 }  // namespace surf::HWY_NAMESPACE
@@ -105,13 +172,7 @@ HWY_AFTER_NAMESPACE();
 namespace surf {
 namespace {
 
-HWY_EXPORT(allow);
-HWY_EXPORT(excess);
-HWY_EXPORT(place_of_excess);
-HWY_EXPORT(find);
-HWY_EXPORT(number_of);
-HWY_EXPORT(best_of);
-HWY_EXPORT(place_of_best);
+HWY_EXPORT(carve);
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr int lanes = 16;  // of the widest vectors
@@ -119,7 +180,7 @@ constexpr int lanes = 16;  // of the widest vectors
 }  // namespace
 
 CarvedScan::CarvedScan(const Grid<float>& heights, double layer, int tip_width, int tip_height)
-    : width_(heights.width()), height_(heights.height()), margin_x_(tip_width + lanes),
+    : width_(heights.width()), height_(heights.height()), margin_x_(tip_width + 2 * lanes),
       margin_y_(tip_height), stride_(width_ + 2 * margin_x_) {
   top_.assign(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height_ + 2 * margin_y_),
               infinity);
@@ -133,53 +194,22 @@ CarvedScan::CarvedScan(const Grid<float>& heights, double layer, int tip_width, 
     }
 }
 
-void TipCarver::carve(const CarvedScan& scan, int x, int y, const CarvedTip& tip,
-                      std::vector<float>& demand) {
-  ways_.resize(tip.z.size());
-  HWY_DYNAMIC_DISPATCH(find)
-  (ways_.data(), tip.mirrored.data(), scan.top(x + tip.apex_x - (tip.width - 1), y + tip.apex_y),
-   scan.bottom(x, y), tip.apex_tolerance, tip.height, tip.stride, scan.stride());
-  const int count = tip.height * tip.stride;
-  allowed_.assign(static_cast<std::size_t>(count), -infinity);
-  const auto try_way = [&](int i, int j, float offset) {  // contact at the tip's sample (i, j)
-    HWY_DYNAMIC_DISPATCH(allow)
-    (allowed_.data(), scan.top(x - i, y - j), offset, tip.height, tip.stride, scan.stride());
-  };
-  constexpr int few = 24;
-  if (HWY_DYNAMIC_DISPATCH(number_of)(ways_.data(), count) <= few) {
-    for (int w = 0; w < count; ++w)
-      if (const float offset = ways_[static_cast<std::size_t>(w)]; offset > -infinity)
-        try_way(tip.width - 1 - w % tip.stride, w / tip.stride, offset);
-    for (std::size_t k = 0; k < tip.z.size(); ++k)
-      if (allowed_[k] < tip.z[k] - tip.threshold[k] && allowed_[k] > -infinity)
-        demand[k] = std::min(demand[k], allowed_[k] + tip.threshold[k]);
-    return;
-  }
-  // Few of many contacts are needed. Repeatedly take the sample with the largest excess over what
-  // the contacts so far allow, and add the contact that allows this sample the most. If that is not
-  // enough, no contact is, and the demand on the sample is known.
-  for (;;) {
-    const float worst =
-        HWY_DYNAMIC_DISPATCH(excess)(tip.z.data(), tip.threshold.data(), allowed_.data(), count);
-    if (!(worst > 0)) return;
-    const int k = HWY_DYNAMIC_DISPATCH(place_of_excess)(tip.z.data(), tip.threshold.data(),
-                                                        allowed_.data(), worst);
-    const int u = k % tip.stride, v = k / tip.stride;
-    const float* around = scan.top(x - (tip.width - 1) + u, y + v);  // at mirrored sample (0, 0)
-    const float best =
-        HWY_DYNAMIC_DISPATCH(best_of)(ways_.data(), around, tip.height, tip.stride, scan.stride());
-    if (best == -infinity) return;  // no contact is possible
-    const auto at = static_cast<std::size_t>(k);
-    if (best < tip.z[at] - tip.threshold[at]) {
-      demand[at] = std::min(demand[at], best + tip.threshold[at]);
-      allowed_[at] = infinity;
-      continue;
-    }
-    const int w =
-        HWY_DYNAMIC_DISPATCH(place_of_best)(ways_.data(), around, tip.stride, scan.stride(), best);
-    if (best == infinity) allowed_[at] = infinity;  // beyond the border everything is allowed
-    try_way(tip.width - 1 - w % tip.stride, w / tip.stride, ways_[static_cast<std::size_t>(w)]);
-  }
+void TipCarver::begin(const CarvedTip& tip) {
+  const std::size_t count = tip.z.size();
+  limits_.resize(count);
+  for (std::size_t k = 0; k < count; ++k) limits_[k] = tip.z[k] - tip.threshold[k];
+  ways_.resize(count);
+  open_.resize(count);
+  for (auto* list : {&shifts_, &places_, &samples_}) list->resize(count);
+}
+
+void TipCarver::carve(const CarvedScan& scan, const std::vector<float>& apex, int x, int y,
+                      const CarvedTip& tip) {
+  HWY_DYNAMIC_DISPATCH(carve)
+  ({tip.mirrored.data(), scan.top(x, y), apex.data() + scan.offset(x, y), scan.stride(),
+    scan.bottom(x, y), tip.apex_tolerance, tip.width, tip.height, tip.stride, tip.apex_x,
+    tip.apex_y, limits_.data(), ways_.data(), shifts_.data(), open_.data(), places_.data(),
+    samples_.data()});
 }
 
 }  // namespace surf

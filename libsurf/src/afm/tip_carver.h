@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
+#include "core/aligned.h"
 #include "surf/core/grid.h"
 
 namespace surf {
@@ -23,12 +25,14 @@ class CarvedScan {
   /// The bottom of the layer: -infinity in holes.
   float bottom(int x, int y) const { return bottom_[offset(x, y)]; }
   std::ptrdiff_t stride() const { return stride_; }
-
- private:
+  /// For arrays that are laid out like the scan: their size, and the place of (x, y).
+  std::size_t size() const { return top_.size(); }
+  const float* tops() const { return top_.data(); }
   std::size_t offset(int x, int y) const {
     return static_cast<std::size_t>((y + margin_y_) * stride_ + x + margin_x_);
   }
 
+ private:
   int width_, height_, margin_x_, margin_y_;
   std::ptrdiff_t stride_;
   std::vector<float> top_, bottom_;
@@ -40,7 +44,7 @@ struct CarvedTip {
   int stride = 0;                   ///< a multiple of 16
   std::vector<float> z, threshold;  ///< a sample is lowered only by more than its threshold
   /// z with each row reversed, which is the order of the scan's samples at contact.
-  std::vector<float> mirrored;
+  AlignedVector<float> mirrored;
   float apex_tolerance = 0;
 
   /// Sets sample k = row * stride + column.
@@ -53,19 +57,27 @@ struct CarvedTip {
   float at(int i, int j) const { return z[static_cast<std::size_t>(j * stride + i)]; }
 };
 
-/// Computes the demands of one point of a scan on a tip.
+/// Computes what points of a scan demand of a tip.
 class TipCarver {
  public:
-  /// Lowers `demand` (laid out like the tip's samples) to what point (x, y) allows, for samples
-  /// that are higher than that by more than their threshold.
-  void carve(const CarvedScan& scan, int x, int y, const CarvedTip& tip,
-             std::vector<float>& demand);
+  /// Forgets what earlier points demanded. Then points may follow, all with this tip.
+  void begin(const CarvedTip& tip);
+
+  /// Lowers `limits()` to what point (x, y) of the scan allows. `apex` says how deep the apex can
+  /// be at each place: laid out like the scan, as by `apex_heights`. It decides the order of the
+  /// work, not the result.
+  void carve(const CarvedScan& scan, const std::vector<float>& apex, int x, int y,
+             const CarvedTip& tip);
+
+  /// The least height that the points since `begin` allow each sample, laid out like the samples;
+  /// the sample's height less its threshold where all of them allow that.
+  const AlignedVector<float>& limits() const { return limits_; }
 
  private:
-  // For each sample that can touch: tip - scan(x, y); -infinity if the apex would penetrate the
-  // scan.
-  std::vector<float> ways_;
-  std::vector<float> allowed_;  // the height that the contacts tried so far allow
+  AlignedVector<float> limits_;
+  // Lists of vectors of samples; see the source.
+  AlignedVector<float> ways_, open_;
+  std::vector<std::int32_t> shifts_, places_, samples_;
 };
 
 }  // namespace surf

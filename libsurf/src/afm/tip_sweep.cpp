@@ -123,7 +123,7 @@ class Opener {
   // Opens `z`; NaN where the opening is not known. Appends the remaining heights to `left`.
   Grid<float> open(const Grid<float>& z, const CarvedTip& tip, std::vector<float>& left) const {
     const CarvedScan scan(z, 0, tip.width, tip.height);
-    Grid<float> out = explained_height(scan, tip, threads_);
+    Grid<float> out = explained_height(scan, apex_heights(scan, tip, threads_), tip, threads_);
     for (std::size_t k = 0; k < out.size(); ++k) {
       float& made = out.data()[k];
       if (!std::isfinite(made) || !std::isfinite(z.data()[k])) made = NAN;

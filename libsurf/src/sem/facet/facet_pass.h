@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/aligned.h"
 #include "facet_operations.h"
-#include "sem/model/aligned.h"
 #include "surf/core/edge.h"
 #include "surf/core/grid.h"
 #include "surf/sem/filter_bank.h"

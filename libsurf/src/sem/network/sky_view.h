@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/aligned.h"
 #include "network_operations.h"
-#include "sem/model/aligned.h"
 #include "surf/core/edge.h"
 #include "surf/core/grid.h"
 
