@@ -52,9 +52,8 @@ Calibration calibration_of(const Bytes& bytes, const TiffPage& page) {
 }
 
 SampleType sample_type(const Bytes& bytes, const TiffPage& page) {
-  const int bits = static_cast<int>(page.number(bits_tag).value_or(0));
-  const int kind =
-      static_cast<int>(page.number(kind_tag).value_or(1));  // 1 unsigned, 2 signed, 3 floating
+  const double bits = page.number(bits_tag).value_or(0);
+  const double kind = page.number(kind_tag).value_or(1);  // 1 unsigned, 2 signed, 3 floating
   if (kind == 3 && bits == 32) return SampleType::float32;
   if (kind == 3 && bits == 64) return SampleType::float64;
   if (bits == 16) return kind == 2 ? SampleType::int16 : SampleType::uint16;
@@ -70,10 +69,11 @@ std::shared_ptr<const std::string> joined_strips(const Bytes& bytes, const TiffP
     bytes.fail("a channel's samples are missing");
   std::string all;
   for (std::size_t i = 0; i < strips->count(); ++i) {
-    const auto at = strips->number(i), size = sizes->number(i);
+    const auto at = strips->whole(i), size = sizes->whole(i);
     if (!at || !size) bytes.fail("a channel's samples are missing");
-    if (all.size() + *size > double(bytes.size())) bytes.fail("a channel is larger than the file");
-    all += bytes.part(static_cast<std::size_t>(*at), static_cast<std::size_t>(*size)).text();
+    if (*size > bytes.size() - std::min(all.size(), bytes.size()))
+      bytes.fail("a channel is larger than the file");
+    all += bytes.part(*at, *size).text();
   }
   return std::make_shared<const std::string>(std::move(all));
 }

@@ -16,7 +16,7 @@ namespace surf::io {
 namespace {
 
 constexpr int magic_tag = 50432, version_tag = 50433, data_tag = 50434, header_tag = 50435;
-constexpr std::uint32_t magic = 0x0E031301, first_with_type = 0x01000002;
+constexpr double magic = 0x0E031301, first_with_type = 0x01000002;
 
 // Offsets in the header.
 constexpr std::size_t name_at = 4, name_bytes = 64, mode_at = 68, mode_bytes = 16, width_at = 100,
@@ -34,7 +34,7 @@ std::string wide_text(const Bytes& header, std::size_t at, std::size_t size) {
   return clean_text(text);
 }
 
-SampleType sample_type(const Bytes& header, std::uint32_t version) {
+SampleType sample_type(const Bytes& header, double version) {
   const auto type = version >= first_with_type ? header.little<std::int32_t>(type_at) : 0;
   switch (type) {
     case 0:
@@ -63,10 +63,10 @@ Scan parse_park(const std::string& file, std::string_view content) {
   if (pages.empty()) bytes.fail("it has no page");
   const TiffPage& page = pages.front();
   const TiffTag *const data = page.find(data_tag), *const header_value = page.find(header_tag);
-  if (page.number(magic_tag) != double(magic) || !data || !header_value)
+  if (page.number(magic_tag) != magic || !data || !header_value)
     bytes.fail("its samples or their header are missing", copy_again);
   const Bytes& header = header_value->bytes();
-  const auto version = static_cast<std::uint32_t>(page.number(version_tag).value_or(0));
+  const double version = page.number(version_tag).value_or(0);
   const auto width = header.little<std::int32_t>(width_at),
              height = header.little<std::int32_t>(height_at);
   const SampleType type = sample_type(header, version);

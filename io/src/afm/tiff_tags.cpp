@@ -2,6 +2,7 @@
 #include "tiff_tags.h"
 
 #include <array>
+#include <cmath>
 #include <set>
 
 #include "scan.h"
@@ -44,6 +45,14 @@ std::optional<double> TiffTag::number(std::size_t index) const {
     default:
       return std::nullopt;
   }
+}
+
+std::optional<std::size_t> TiffTag::whole(std::size_t index) const {
+  constexpr double most = 0x1p53;
+  const auto value = number(index);
+  if (!value || !(*value >= 0 && *value <= most) || *value != std::floor(*value))
+    return std::nullopt;
+  return static_cast<std::size_t>(*value);
 }
 
 std::string TiffTag::text() const { return clean_text(values_.fixed_text(0, values_.size())); }

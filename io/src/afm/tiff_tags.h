@@ -21,6 +21,8 @@ class TiffTag {
   std::size_t count() const { return count_; }
   const Bytes& bytes() const { return values_; }
   std::optional<double> number(std::size_t index = 0) const;
+  /// A number that is whole, 0 or above and exact, such as a place or a size.
+  std::optional<std::size_t> whole(std::size_t index = 0) const;
   std::string text() const;
 
  private:

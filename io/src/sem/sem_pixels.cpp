@@ -46,9 +46,9 @@ std::string strip_bytes(const TiffPage& page, const Bytes& file, std::size_t wan
   std::string bytes;
   for (std::size_t i = 0; i < std::min(places.count(), sizes.count()) && bytes.size() < wanted;
        ++i) {
-    const auto place = places.number(i), size = sizes.number(i);
-    if (!place || !size || *place < 0 || *size < 0) break;
-    bytes += file.part(static_cast<std::size_t>(*place), static_cast<std::size_t>(*size)).text();
+    const auto place = places.whole(i), size = sizes.whole(i);
+    if (!place || !size) break;
+    bytes += file.part(*place, *size).text();
   }
   if (bytes.size() < wanted) file.fail("its pixels are not all there", copy_again);
   return bytes;
