@@ -18,6 +18,7 @@ set(SEMSURF_TOO_LONG_EMULATED
   "TipSweep\\.FindsAThresholdWhoseTipIsAmongTheBest"
   "UnconstrainedDirections\\..*"
   # mc_sim
+  "Beside/SurfaceQueries\\..*"
   "CascadeLibrary\\.(IsDistributedAsCascadesAre|TakesNoPageThatLeadsOutOfItself)"
   "Detection\\.(QuadrantsAndWindowsAndConesPartitionTheTotal|EfficiencyScalesYieldAndError)"
   "Dielectric\\..*"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -81,9 +83,11 @@ void through(const io::MeshFormat& format, const SurfaceScene& scene) {
   }
 }
 
-void go_on_with_surfaces(const SurfaceScene& scene) {
-  for (const Surface& surface : scene.surfaces)
+void go_on_with_surfaces(SurfaceScene scene) {
+  for (Surface& surface : scene.surfaces) {
     if (surface.mesh.triangles.size() > most_triangles) return;
+    surface.drape.reset();  // OpenImageIO would look for its picture on the disk
+  }
   for (const Surface& surface : scene.surfaces) edit(merge_equal_vertices(surface.mesh));
   for (const io::MeshFormat* format : io::known_formats())
     if (!format->needs_vtk) through(*format, scene);
@@ -127,7 +131,9 @@ void go_on_with_field(HeightField field) {
   });
   try_step([&] { expect_valid_data(height_field_sheet(field), "height_field_sheet"); });
   try_step([&] { small_model(field.pitch_x_nm).predict(field); });
-  try_step([&] { expect_read_again("written/again.gsf", io::format_gsf(field, {})); });
+  // As write_height_field, which refuses heights that 32 bits cannot hold.
+  if (std::ranges::all_of(field.z_nm.data(), [](double z) { return std::abs(z) < 1e38; }))
+    try_step([&] { expect_read_again("written/again.gsf", io::format_gsf(field, {})); });
   try_step([&] { expect_read_again("written/again.txt", io::format_text_field(field, {})); });
 }
 

@@ -132,7 +132,8 @@ PoseSearch search_poses(const BlurLevel& level, double pitch, const Registration
         const auto [width, height] = turned.size();
         for (const ShiftPeak& peak : shifts.peaks(turned.samples(), peaks_of_pose))
           found[p].push_back(
-              {turned.three_points(x_of(peak.x + width / 2), y_of(peak.y + height / 2)), peak.evidence});
+              {turned.three_points(x_of(peak.x + width / 2), y_of(peak.y + height / 2)),
+               peak.evidence});
       },
       watch);
 
