@@ -104,15 +104,15 @@ void compare(const HeightField& scan, double threshold_nm, int size) {
   options.width = options.height = size;
   options.threshold_nm = threshold_nm;
   options.border = false;
-  BlindTipSummary summary;
-  Tip tip;
+  BlindTip found;
   for (const int threads : {1, 2}) {
     options.threads = threads;
-    const double s = seconds([&] { tip = blind_tip({scan}, options).tip; });
+    const double s = seconds([&] { found = blind_tip({scan}, options); });
     fmt::print("threshold {} nm, {} thread{}: {:.3f} s, {} points in {} rounds\n", threshold_nm,
-               threads, threads > 1 ? "s" : "", s, summary.points, summary.rounds);
+               threads, threads > 1 ? "s" : "", s, found.summary.points, found.summary.rounds);
   }
 #ifdef SEMSURF_GWYDDION
+  const Tip& tip = found.tip;
   Tip theirs;
   double partial = 0;
   gwy_process_type_init();

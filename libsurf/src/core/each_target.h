@@ -10,7 +10,8 @@
 // HWY_NAMESPACE and is compiled for the current target. The rest of the source stands in #if
 // HWY_ONCE; there HWY_EXPORT(f) and HWY_DYNAMIC_DISPATCH(f)(arguments) call the best f that the
 // processor supports. Arithmetic is written as plain loops or with the compiler's vectors of
-// SEMSURF_VECTOR_BYTES, whose operators read like formulas. This header has no include guard,
+// SEMSURF_VECTOR_BYTES, whose operators read like formulas; with Highway's own operations where
+// the loop asks whether any number of a vector passes a test. This header has no include guard,
 // because it is included again for each target.
 #include "core/left_out_targets.h"
 
