@@ -17,6 +17,7 @@ std::vector<double> at(double off_px) {
   std::vector<double> row;
   for (const bool fitted : {true, false}) {
     ReconstructionOptions o;
+    o.double_precision = true;
     o.uncertainty = false;
     o.refine_transform = fitted;
     const Reconstruction r = reconstruct(&scene.afm, &scene.sem, o);

@@ -23,6 +23,7 @@ std::vector<double> outcomes(
   std::vector<double> row;
   for (const bool fitted : {true, false}) {
     ReconstructionOptions o;
+    o.double_precision = true;
     o.refine_calibration = fitted;
     const Reconstruction r = reconstruct(&scene.afm, &scene.sem, o);
     double within = 0;
@@ -36,6 +37,7 @@ std::vector<double> outcomes(
   // The scan alone, on the same samples: a gain of 0 leaves the SEM image without a say.
   scene.sem.gains = {0};
   ReconstructionOptions o;
+  o.double_precision = true;
   o.uncertainty = o.refine_transform = o.refine_calibration = false;
   row.push_back(scene.rms_error(reconstruct(&scene.afm, &scene.sem, o).surface));
   return row;

@@ -16,6 +16,7 @@ struct End {
 End end_of(const test::SmallScene& scene, ReconstructionMethod method,
            std::vector<double> scales_px) {
   ReconstructionOptions o;
+  o.double_precision = true;
   o.method = method;
   o.scales_px = std::move(scales_px);
   o.uncertainty = false;

@@ -29,6 +29,7 @@ std::vector<double> at(double factor) {
   std::vector<double> row = outcome(scene);
   // As the command does where no noise is given: from what a coarse reconstruction leaves.
   ReconstructionOptions coarse;
+  coarse.double_precision = true;
   coarse.scales_px = {5};
   coarse.iterations = 12;
   coarse.uncertainty = false;

@@ -46,6 +46,7 @@ std::vector<double> at(double width_nm) {
   SemData blind = scene.sem;
   blind.gains = {0};
   ReconstructionOptions o;
+  o.double_precision = true;
   o.refine_transform = o.refine_calibration = false;
   const Reconstruction alone = reconstruct(&scene.afm, &blind, o);
   const Inside b = inside(scene, both, both.surface, width_nm),
