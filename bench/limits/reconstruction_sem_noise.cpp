@@ -13,7 +13,9 @@ namespace {
 /// Error, share of heights within one deviation, what is left of the SEM image, and whether that is
 /// said.
 std::vector<double> outcome(const test::SmallScene& scene) {
-  const Reconstruction r = reconstruct(&scene.afm, &scene.sem);
+  ReconstructionOptions o;
+  o.double_precision = true;
+  const Reconstruction r = reconstruct(&scene.afm, &scene.sem, o);
   double within = 0;
   for (std::size_t i = 0; i < r.deviation_nm.size(); ++i)
     within +=
