@@ -80,8 +80,10 @@ class ProvenDecimation {
       return std::tuple(a.nearest, -a.distance_nm, a.triangle) <
              std::tuple(b.nearest, -b.distance_nm, b.triangle);
     });
-    const auto others = std::ranges::unique(there.unproven, {}, &Unproven::nearest);
-    there.unproven.erase(others.begin(), others.end());
+    const auto others =
+        std::unique(there.unproven.begin(), there.unproven.end(),
+                    [](const Unproven& a, const Unproven& b) { return a.nearest == b.nearest; });
+    there.unproven.erase(others, there.unproven.end());
     for (const Unproven& u : there.unproven) near.push_back(u.triangle);
     for (const Unproven& u : back.unproven) near.push_back(u.nearest);
     return near;
