@@ -113,7 +113,7 @@ std::vector<std::filesystem::path> write_view(const std::filesystem::path& path,
   const std::vector<OutputFile> files = format->format(path, scene);
   std::vector<std::filesystem::path> names;
   for (const OutputFile& file : files) names.push_back(file.path);
-  std::ranges::rotate(names, names.end() - 1);
+  std::rotate(names.begin(), names.end() - 1, names.end());
   refuse_strangers(names.front(), {names.begin() + 1, names.end()});
   write_in_order(files);
   return names;
