@@ -330,7 +330,7 @@ TEST(FirstCalibration, LeavesOutSaturatedPixelsOnly) {
 TEST(ReconstructionCheckpoint, AStateComesBackToTheLastBit) {
   ReconstructionState state;
   state.surface.z_nm = Grid<double>(3, 2);
-  state.surface.z_nm.data() = {1.0 / 3, -0.0, 5e-324, 1e300, 2, 3};
+  state.surface.z_nm.data() = {1.0 / 3, -0.0, 5e-324, 1e60, 2, 3};
   state.surface.valid = Mask(3, 2, 1);
   state.surface.pitch_x_nm = 0.1;
   state.sem_to_afm = {1, 2, 3, 4, 5, 6};

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
 #include "surf/core/all_within.h"
 #include "surf/core/error.h"
@@ -25,15 +24,16 @@ void validate_raster(const Placement& placement, const Grid<double>& values, con
                                    valid.height(), words.value, width, height),
                        "Give a mask of the same size, or none");
   }
-  if (all_within(values.data(), std::numeric_limits<double>::max())) return;
+  if (all_within(values.data(), largest_raster_number)) return;
   for (int row = 0; row < height; ++row) {
     for (int column = 0; column < width; ++column) {
       const double value = values(column, row);
-      if (!valid.includes(column, row) || std::isfinite(value)) continue;
+      if (!valid.includes(column, row) || std::abs(value) <= largest_raster_number) continue;
       throw InvalidInput(
           subject,
           fmt::format("the {} at column {}, row {} is {}", words.value, column, row, value),
-          "Fill the sample or mark it as invalid");
+          std::isfinite(value) ? "Nothing computes with more than 1e60: check the unit"
+                               : "Fill the sample or mark it as invalid");
     }
   }
 }

@@ -13,6 +13,9 @@ namespace {
 constexpr std::size_t block_size = 512;                              // triangles per unit of work
 constexpr double unit = std::numeric_limits<double>::epsilon() / 2;  // of rounding
 constexpr std::uint8_t most_cuts = 120;
+// Pieces of one triangle: so many, and so many for each triangle of the other surface, which may
+// all lie below this one. Needles across needles would take millions.
+constexpr std::size_t most_pieces = 20000, most_pieces_each = 64;
 constexpr double much_longer =
     3;  // pieces this much longer than what is near them are halved first
 
@@ -66,7 +69,9 @@ namespace {
 class Bounding {
  public:
   Bounding(const TriangleMesh& from, const TriangleTree& to, const BoundAim& aim)
-      : from_(from), to_(to), aim_(aim), enough_(std::min(aim.enough_nm, aim.limit_nm)) {}
+      : from_(from), to_(to), aim_(aim),
+        most_pieces_of_one_(most_pieces + most_pieces_each * to.size()),
+        enough_(std::min(aim.enough_nm, aim.limit_nm)) {}
 
   /// Returns the bound. `failed` is set if the limit could not be proven.
   double of(std::uint32_t triangle, std::uint32_t& near, bool& failed) {
@@ -81,6 +86,7 @@ class Bounding {
     of_cut_nm_ = 9 * unit * largest;
     whole.near = near;
     bound_ = 0;
+    pieces_ = 0;
     stack_.assign(1, whole);
     failed = false;
     while (!stack_.empty() && !failed) {
@@ -135,7 +141,7 @@ class Bounding {
     double distance = first.distance_nm;
     if (other != near) distance = std::min(distance, farthest(piece, other).distance_nm);
     if (settle(distance)) return true;
-    if (piece.cuts >= most_cuts) {
+    if (piece.cuts >= most_cuts || ++pieces_ > most_pieces_of_one_) {
       bound_ = std::max(bound_, distance);
       return distance <= aim_.limit_nm;
     }
@@ -190,6 +196,8 @@ class Bounding {
   const TriangleMesh& from_;
   const TriangleTree& to_;
   const BoundAim aim_;
+  const std::size_t most_pieces_of_one_;
+  std::size_t pieces_ = 0;
   // Rises from triangle to triangle.
   double enough_;
   double of_cut_nm_ = 0, bound_ = 0;

@@ -2,6 +2,7 @@
 #include "mesh/repair_steps.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <unordered_map>
@@ -53,7 +54,7 @@ class CubeGrid {
   static std::uint64_t key(const Vec3& c) {
     std::uint64_t h = 0;
     for (const double v : {c.x, c.y, c.z}) {
-      h = (h ^ static_cast<std::uint64_t>(static_cast<std::int64_t>(v))) * 0x9e3779b97f4a7c15u;
+      h = (h ^ std::bit_cast<std::uint64_t>(v + 0.0)) * 0x9e3779b97f4a7c15u;  // -0 is 0
       h ^= h >> 29;
     }
     return h;

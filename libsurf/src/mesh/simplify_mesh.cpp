@@ -142,6 +142,9 @@ SimplifiedMesh simplify_mesh(const TriangleMesh& mesh, const SimplifyOptions& op
   summary.triangles_before = mesh.triangles.size();
   options.watch.check();
   TriangleMesh original = merged(mesh), result;
+  if (original.triangles.empty())
+    throw InvalidInput("mesh", "every triangle has a corner twice: there is no surface",
+                       "Give a mesh with triangles that have an area");
   const bool to_do = original.triangles.size() > std::max<std::size_t>(options.triangles, 4);
   if (to_do)
     result = options.tolerance_nm > 0 ? ProvenDecimation(original, options, summary).run()

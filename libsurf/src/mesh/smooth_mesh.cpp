@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surf/mesh/smooth_mesh.h"
 
+#include <cmath>
 #include <utility>
 
 #include "mesh/edges.h"
@@ -9,6 +10,9 @@
 
 namespace surf {
 namespace {
+
+// Sums of neighbours stay finite.
+constexpr double most_coordinate = 1e150;
 
 void require_share(double value, const char* subject) {
   if (value > 0 && value < 1) return;
@@ -57,6 +61,11 @@ TriangleMesh smooth_mesh(const TriangleMesh& mesh, const SmoothOptions& options)
   require_share(options.step, "smoothing step");
   require_share(options.pass_band, "pass band");
   validate(mesh);
+  for (const Vec3& v : mesh.vertices_nm)
+    if (!(std::abs(v.x) <= most_coordinate && std::abs(v.y) <= most_coordinate &&
+          std::abs(v.z) <= most_coordinate))
+      throw InvalidInput("mesh", "it has coordinates beyond 1e150 nm: they cannot be averaged",
+                         "Check the unit of the mesh");
   const Weld weld = weld_equal_vertices(mesh);
   const Net net = make_net(welded_triangles(mesh, weld), weld.points());
   std::vector<Vec3> place, pull;

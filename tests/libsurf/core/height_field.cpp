@@ -55,7 +55,7 @@ TEST(HeightField, RefusesFewerThanTwoSamples) {
 }
 
 TEST(HeightField, RefusesBadPitches) {
-  for (const double pitch : {0.0, -1.0, static_cast<double>(NAN), HUGE_VAL}) {
+  for (const double pitch : {0.0, -1.0, static_cast<double>(NAN), HUGE_VAL, 1e61, 1e-61}) {
     HeightField field = small_field();
     field.pitch_x_nm = pitch;
     EXPECT_THAT(complaint(field), HasSubstr("pitch along x"));
@@ -83,6 +83,16 @@ TEST(HeightField, NamesTheHeightThatIsNotFinite) {
   HeightField field = small_field();
   field.z_nm(2, 1) = NAN;
   EXPECT_THAT(complaint(field), HasSubstr("column 2, row 1"));
+}
+
+TEST(HeightField, RefusesHeightsWhosePowersOverflow) {
+  HeightField field = small_field();
+  field.z_nm(1, 0) = -1e61;
+  EXPECT_THAT(complaint(field), HasSubstr("column 1, row 0 is -1e+61"));
+  field.z_nm(1, 0) = -1e60;
+  EXPECT_EQ(complaint(field), "");
+  field.origin_x_nm = 1e61;
+  EXPECT_THAT(complaint(field), HasSubstr("origin"));
 }
 
 TEST(HeightField, InvalidSamplesNeedNoHeight) {

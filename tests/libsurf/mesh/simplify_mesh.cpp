@@ -122,6 +122,10 @@ TEST(SimplifyMesh, RefusesBadArguments) {
   EXPECT_THROW(simplify_mesh(box, {}), UsageError);
   EXPECT_THROW(simplify_mesh(box, {.tolerance_nm = -1}), UsageError);
   EXPECT_THROW(simplify_mesh({}, {.tolerance_nm = 1}), InvalidInput);
+  TriangleMesh line;
+  line.vertices_nm = {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}};
+  line.triangles = {{0, 1, 2}};
+  EXPECT_THROW(simplify_mesh(line, {.tolerance_nm = 1}), InvalidInput);
 }
 
 TEST(SimplifyMesh, KeepsFixedVertices) {

@@ -76,6 +76,7 @@ TEST(SmoothMesh, RefusesBadArguments) {
   EXPECT_THROW(smooth_mesh(box, {.step = NAN}), UsageError);
   EXPECT_THROW(smooth_mesh(box, {.pass_band = 1}), UsageError);
   EXPECT_THROW(smooth_mesh({}), InvalidInput);
+  EXPECT_THROW(smooth_mesh(make_box({0, 0, 0}, {1, 1e308, 1})), InvalidInput);
 }
 
 }  // namespace surf

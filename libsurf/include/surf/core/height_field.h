@@ -16,7 +16,8 @@ struct HeightField : Placement {
 };
 
 /// Throws InvalidInput (naming `subject`) if the field is smaller than 2x2, its placement is
-/// invalid, the mask has another size, or a valid height is not finite.
+/// invalid, the mask has another size, or a valid height is not finite or beyond
+/// `largest_raster_number`.
 void validate(const HeightField& field, const char* subject = "height field");
 
 }  // namespace surf

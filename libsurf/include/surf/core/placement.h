@@ -31,11 +31,15 @@ struct Placement : Pitch {
   friend bool operator==(const Placement&, const Placement&) = default;
 };
 
-/// Throws InvalidInput (naming `subject`) if a pitch is not positive and finite.
+/// The largest magnitude of coordinates, heights and values of rasters, and of a pitch and its
+/// inverse: fourth powers are still finite, so that no step makes NaN of them.
+inline constexpr double largest_raster_number = 1e60;
+
+/// Throws InvalidInput (naming `subject`) if a pitch is not positive or out of range.
 void validate(const Pitch& pitch, const char* subject);
 
-/// Throws InvalidInput (naming `subject`) if a pitch is not positive and finite or the origin is
-/// not finite.
+/// Throws InvalidInput (naming `subject`) if a pitch is not positive or out of range, or the origin
+/// is.
 void validate(const Placement& placement, const char* subject);
 
 }  // namespace surf

@@ -11,7 +11,8 @@ namespace surf {
 
 struct DistanceBoundOptions {
   /// The bound is at most this share larger than the distance; > 0. Where that would take more than
-  /// 120 cuts of one triangle, it is larger, and still a bound.
+  /// 120 cuts across one place, or tens of thousands of pieces of one triangle, it is larger, and
+  /// still a bound.
   double accuracy = 0.01;
   int threads = 0;  ///< 0: one per hardware thread. Does not change the result
   Watch watch;

@@ -70,15 +70,19 @@ class EngineModel final : public ImageModel {
   ModelImages predict(const HeightField& field, const ModelOptions& options) const override {
     check_field(scope_, field);
     check_span(field);
-    return Kind::run(*parameters_, field.pitch_x_nm, field.pitch_y_nm, options,
-                     [&](const auto& engine) { return engine.predict(field.z_nm); });
+    ModelImages images = Kind::run(*parameters_, field.pitch_x_nm, field.pitch_y_nm, options,
+                                   [&](const auto& engine) { return engine.predict(field.z_nm); });
+    check_images(images, names_);
+    return images;
   }
 
   std::unique_ptr<Linearization> linearize(const HeightField& field,
                                            const ModelOptions& options) const override {
     check_field(scope_, field);
     check_span(field);
-    return std::make_unique<EngineLinearization<Kind>>(parameters_, field, options);
+    auto linear = std::make_unique<EngineLinearization<Kind>>(parameters_, field, options);
+    check_images(linear->images(), names_);
+    return linear;
   }
 
  private:

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include <fmt/format.h>
 
+#include "surf/core/all_within.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 
@@ -71,6 +73,16 @@ void check_weights(const ModelImages& weights, std::size_t channels, const Grid<
 
 void check_change(const Grid<double>& dz_nm, const Grid<double>& z_nm) {
   check_finite(dz_nm, z_nm, "change of the heights");
+}
+
+void check_images(const ModelImages& images, const std::vector<std::string>& channels) {
+  for (std::size_t c = 0; c < images.size(); ++c)
+    if (!all_within(images[c].data(), std::numeric_limits<double>::max()))
+      throw InvalidInput("image model",
+                         fmt::format("its image of {} is not finite: its numbers are too large for "
+                                     "these heights",
+                                     channels[c]),
+                         "Train it again, or check the unit of the heights");
 }
 
 double magnitude(const std::vector<double>& values) {

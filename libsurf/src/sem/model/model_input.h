@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
+#include <vector>
 
 #include "surf/core/height_field.h"
 #include "surf/sem/image_model.h"
@@ -17,6 +19,9 @@ void check_weights(const ModelImages& weights, std::size_t channels, const Grid<
 
 /// Throws InvalidInput unless the change of heights is finite and of the size of the heights.
 void check_change(const Grid<double>& dz_nm, const Grid<double>& z_nm);
+
+/// Throws InvalidInput unless a model's images are finite: large numbers in a model overflow.
+void check_images(const ModelImages& images, const std::vector<std::string>& channels);
 
 /// A power of two near the largest magnitude; 0 if all values are 0. Division by it keeps values in
 /// the range of single precision without changing their digits.
