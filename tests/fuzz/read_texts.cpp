@@ -10,6 +10,7 @@
 #include "surf/io/sim/materials.h"
 #include "surf/io/sim/scene_file.h"
 #include "surf/io/transform_file.h"
+#include "surf/mesh/shapes.h"
 #include "target_lists.h"
 
 namespace surf::test {
@@ -20,11 +21,12 @@ void refuse_large_shapes(const std::string& content) {
   constexpr double most = 200;
   const auto field = io::TomlTable::parse(content, "scene.toml").table("height_field");
   if (!field || !field->has("shape")) return;
-  for (const char* side : {"width", "depth", "correlation"}) {
-    const double samples =
-        field->length_nm(side).value_or(0) / field->length_nm("pitch").value_or(1);
-    if (samples > most) throw InvalidInput("input", "its shape is large", "Try a smaller one");
-  }
+  const FieldExtent usual;
+  const double pitch = field->length_nm("pitch").value_or(usual.pitch_nm),
+               width = field->length_nm("width").value_or(usual.width_nm);
+  for (const double side : {width, field->length_nm("depth").value_or(width),
+                            field->length_nm("correlation").value_or(0)})
+    if (side / pitch > most) throw InvalidInput("input", "its shape is large", "Try a smaller one");
 }
 
 Accepted scene(const std::string& content) {

@@ -20,6 +20,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "mesh/edges.h"
 #include "surf/core/error.h"
 
 namespace surf {
@@ -52,7 +53,10 @@ bool to_cgal(const TriangleMesh& mesh, Mesh& out) {
   std::vector<Kernel::Point_3> points;
   for (const Vec3& v : mesh.vertices_nm) points.emplace_back(v.x, v.y, v.z);
   std::vector<std::vector<std::size_t>> polygons;
-  for (const Triangle& t : mesh.triangles) polygons.push_back({t[0], t[1], t[2]});
+  for (const Triangle& t : mesh.triangles) {
+    if (has_repeated_corner(t)) return false;
+    polygons.push_back({t[0], t[1], t[2]});
+  }
   pmp::orient_polygon_soup(points, polygons);
   if (!pmp::is_polygon_soup_a_polygon_mesh(polygons)) return false;
   pmp::polygon_soup_to_polygon_mesh(points, polygons, out);

@@ -55,10 +55,11 @@ TEST(Specimen, ReachesNoFartherThanTheLargestLength) {
     field.height_field = HeightFieldBody{"scan.gsf", {}, 0, Edge::mirror};
     field.height_field->field.z_nm = Grid<double>(3, 3);
     EXPECT_EQ(complaint(field), "");
-    field.height_field->field.pitch_x_nm = far;
+    const double far_samples = std::min(far, 1e50);  // what a height field may hold
+    field.height_field->field.pitch_x_nm = far_samples;
     EXPECT_THAT(complaint(field), HasSubstr("scan.gsf: it reaches"));
     field.height_field->field.pitch_x_nm = 1;
-    field.height_field->field.z_nm(1, 1) = far;
+    field.height_field->field.z_nm(1, 1) = far_samples;
     EXPECT_THAT(complaint(field), HasSubstr("scan.gsf: it reaches"));
   }
 }

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <string>
 
+#include "sem/model/model_input.h"
 #include "sem/model_surfaces.h"
 #include "surf/core/error.h"
 #include "surf/sem/training_image.h"
@@ -105,6 +107,16 @@ TEST(TrainingImage, IsCheckedPixelByPixel) {
   masked.images[1](3, 2) = NAN;
   masked.standard_errors[1](3, 2) = 0;
   EXPECT_NO_THROW(validate({masked}));
+}
+
+TEST(ImageModel, ImagesMustBeFinite) {
+  ModelImages images(2, Grid<double>(3, 2, 1e300));
+  check_images(images, {"SE", "BSE"});
+  images[1](2, 1) = std::numeric_limits<double>::infinity();
+  EXPECT_NE(message<InvalidInput>([&] {
+              check_images(images, {"SE", "BSE"});
+            }).find("BSE"),
+            std::string::npos);
 }
 
 }  // namespace
