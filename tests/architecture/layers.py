@@ -16,7 +16,7 @@ import tempfile
 ROOMS = ["physics", "geometry", "transport", "request", "cascades", "replay", "results", "sampling", "scheduling"]
 MC = {f"mc/{room}" for room in ROOMS} | {"mc"}
 # The rooms of libsurf's models of SEM images, likewise.
-SEM_ROOMS = ["model", "minimise", "facet", "network", "baselines", "noise", "calibration", "training"]
+SEM_ROOMS = ["model", "minimise", "facet", "network", "baselines", "noise", "calibration", "guided", "training"]
 SEM = {f"sem/{room}" for room in SEM_ROOMS} | {"sem"}
 SURF = {"core", "mesh", "afm", "registration", "reconstruction"} | SEM
 

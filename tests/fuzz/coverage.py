@@ -23,7 +23,7 @@ def functions(build, root, target):
     if not symbolizer:
         sys.exit("llvm-symbolizer-16 is missing: install llvm-16")
     run = subprocess.run(
-        [build / "bin/fuzz", target, "-runs=0", "-print_full_coverage=1", "-max_len=131072",
+        [build / "bin/fuzz", target, "-runs=0", "-print_coverage=1", "-max_len=131072", "-artifact_prefix=/dev/null",
          *(folder for folder in folders if folder.is_dir())],
         env={**os.environ, "ASAN_OPTIONS": f"detect_leaks=0:external_symbolizer_path={symbolizer}"},
         capture_output=True, text=True, errors="replace", check=False)

@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/sem/guided_estimate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "count_variance.h"
+#include "gaussian_window.h"
+#include "guided_tile.h"
+#include "surf/core/error.h"
+#include "surf/core/parallel.h"
+
+namespace surf {
+namespace {
+
+using namespace guided;
+
+constexpr std::size_t most_guides = 15;
+constexpr double yield_sigma_px = 3;       // of the yields that errors are relative to
+constexpr double least_yield_share = 0.1;  // of the mean: darker pixels do not count for more
+// Squared bias over variance where nothing more is known: about what the best windows have.
+constexpr double usual_bias = 0.4;
+constexpr double most_variance_scale = 4;
+constexpr double detail_sigma_px = 1.5;
+constexpr double detail_ranks[detail_classes] = {0.5, 0.85, 0.97};  // of the middle of each class
+constexpr double risk_sigma_px = 5;  // of the pixels whose risk is averaged
+constexpr int block_px = 16;         // squares that Stein's risk is compared in
+// A pixel that differs from its estimate by more than this many standard deviations of its counts
+// keeps what is beyond (Efron and Morris 1972, doi:10.1080/01621459.1972.10481215).
+constexpr double most_deviations = 5;
+
+void check(const CountImage& counts, const std::vector<Guide>& guides, const Grid<int>& region) {
+  const int width = counts[0].primaries.width(), height = counts[0].primaries.height();
+  const auto check_plane = [&](const Grid<double>& plane, const std::string& subject,
+                               double least) {
+    if (plane.width() != width || plane.height() != height || plane.empty())
+      throw InvalidInput(subject,
+                         fmt::format("it has {} x {} pixels, the counts {} x {}", plane.width(),
+                                     plane.height(), width, height),
+                         "Give all of one size");
+    for (const double value : plane.data())
+      if (!(std::isfinite(value) && value >= least))
+        throw InvalidInput(subject, fmt::format("a pixel is {}", value),
+                           "Give numbers that are finite and in range");
+  };
+  constexpr double any = -std::numeric_limits<double>::max();
+  for (const CountHalf& half : counts) {
+    check_plane(half.primaries, "numbers of primaries", 0);
+    check_plane(half.sum, "counts", any);
+    check_plane(half.squares, "squares of counts", 0);
+  }
+  if (guides.size() > most_guides)
+    throw InvalidInput("guides", fmt::format("there are {}", guides.size()), "Give 15 or fewer");
+  for (const Guide& guide : guides) check_plane(guide.values, "guide " + guide.name, any);
+  if (!region.empty() && (region.width() != width || region.height() != height))
+    throw InvalidInput("regions", "they have another size than the counts", "Give all of one size");
+}
+
+std::set<int> numbers_of(const Grid<int>& region) {
+  std::set<int> numbers;
+  for (const int number : region.data())
+    if (number >= 0) numbers.insert(number);
+  if (region.empty()) numbers.insert(0);
+  return numbers;
+}
+
+/// Guides over the pixels of a region, with mean 0 and variance 1; those that do not vary are left
+/// out.
+void set_guides(const std::vector<Guide>& guides, GuidedRegion& r) {
+  for (const Guide& guide : guides) {
+    double n = 0, sum = 0, squares = 0;
+    for (std::size_t i = 0; i < r.counts.seen.size(); ++i)
+      if (r.counts.counts(i)) n += 1, sum += guide.values.data()[i];
+    const double mean = sum / n;
+    for (std::size_t i = 0; i < r.counts.seen.size(); ++i)
+      if (r.counts.counts(i)) squares += std::pow(guide.values.data()[i] - mean, 2);
+    const double deviation = std::sqrt(squares / n);
+    if (!(deviation > 1e-9 * std::abs(mean)) || !std::isfinite(deviation)) continue;
+    std::vector<double> values(r.counts.seen.size(), 0.0);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (r.counts.counts(i)) values[i] = (guide.values.data()[i] - mean) / deviation;
+    if (guide.predicts) r.predicting.push_back(static_cast<int>(r.guides.size()));
+    r.guides.push_back(std::move(values));
+  }
+}
+
+/// How sharply the guides bend at each pixel, by its rank among the region's pixels.
+void set_detail(GuidedRegion& r) {
+  const GaussianWindow window(detail_sigma_px);
+  std::vector<double> bend(r.counts.seen.size(), 0.0), seen = bend, scratch;
+  for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = r.counts.counts(i) ? 1 : 0;
+  window.sum(seen, r.counts.width, r.counts.height, scratch);
+  for (const std::vector<double>& guide : r.guides) {
+    std::vector<double> smooth = guide;
+    window.sum(smooth, r.counts.width, r.counts.height, scratch);
+    for (std::size_t i = 0; i < bend.size(); ++i)
+      if (r.counts.counts(i)) bend[i] += std::pow(guide[i] - smooth[i] / seen[i], 2);
+  }
+  std::vector<double> sorted;
+  for (std::size_t i = 0; i < bend.size(); ++i)
+    if (r.counts.counts(i)) sorted.push_back(bend[i]);
+  std::ranges::sort(sorted);
+  r.detail.assign(bend.size(), 0.0);
+  for (std::size_t i = 0; i < bend.size(); ++i) {
+    if (!r.counts.counts(i)) continue;
+    const auto below = std::ranges::lower_bound(sorted, bend[i]) - sorted.begin();
+    const double rank = static_cast<double>(below) / static_cast<double>(sorted.size());
+    int c = 0;
+    while (c + 2 < detail_classes && rank > detail_ranks[c + 1]) ++c;
+    r.detail[i] = std::clamp(c + (rank - detail_ranks[c]) / (detail_ranks[c + 1] - detail_ranks[c]),
+                             0.0, detail_classes - 1.0);
+  }
+}
+
+/// Weights of squared errors: errors count relative to the yield around.
+void set_weights(GuidedRegion& r) {
+  const GaussianWindow window(yield_sigma_px);
+  std::vector<double> yields(r.counts.seen.size(), 0.0), seen = yields, scratch;
+  double n = 0, sum = 0;
+  for (std::size_t i = 0; i < yields.size(); ++i)
+    if (r.counts.counts(i)) yields[i] = r.counts.mean(i), seen[i] = 1, n += 1, sum += yields[i];
+  const double least = least_yield_share * std::max(sum / n, r.variance.least);
+  window.sum(yields, r.counts.width, r.counts.height, scratch);
+  window.sum(seen, r.counts.width, r.counts.height, scratch);
+  r.weight.assign(yields.size(), 0.0);
+  for (std::size_t i = 0; i < yields.size(); ++i)
+    if (r.counts.counts(i)) r.weight[i] = 1 / std::pow(std::max(yields[i] / seen[i], least), 2);
+}
+
+/// What both halves say of a pixel's squared error.
+struct PixelErrors {
+  double value = 0;
+  double variance = 0;    ///< of `value`, by the windows' weights
+  double difference = 0;  ///< the same, by the difference of the halves: right on average
+  double risk = 0;        ///< Stein's estimate of a half's squared error, less its variance: its
+                          ///< squared bias, right on average
+  double half_noise = 0;  ///< variance of a half's plain mean
+};
+
+PixelErrors errors_of(const GuidedRegion& r, const GuidedPlanes& planes, std::size_t i) {
+  PixelErrors e;
+  const double n = r.counts.primaries(i);
+  double share = 1;
+  for (std::size_t h = 0; h < 2; ++h) {
+    const HalfPlanes& half = planes.halves[h];
+    const double part = r.counts.halves[h].primaries[i] / n;
+    const double residual = half.value[i] - r.counts.halves[h].mean[i];
+    e.value += part * half.value[i];
+    e.variance += part * part * half.variance[i];
+    e.risk += 0.5 * (residual * residual + (2 * half.leverage[i] - 1) * r.raw_noise[h][i]);
+    e.half_noise += 0.5 * r.noise[h][i];
+    share *= part;
+  }
+  const double apart = planes.halves[0].value[i] - planes.halves[1].value[i];
+  e.difference = apart * apart * share;
+  return e;
+}
+
+/// The region's squared errors: variance and bias.
+struct ErrorModel {
+  std::array<double, detail_classes> variance{};  ///< over that by the windows' weights
+  std::array<double, detail_classes> bias{};      ///< squared, over the spread
+
+  double variance_scale(double detail) const { return of(variance, detail); }
+  double bias_scale(double detail) const { return of(bias, detail); }
+
+ private:
+  static double of(const std::array<double, detail_classes>& scales, double detail) {
+    double scale = 0;
+    for (int c = 0; c < detail_classes; ++c) scale += share_of_class(c, detail) * scales[c];
+    return scale;
+  }
+};
+
+/// Squared bias over spread, of a class: the least squares fit over squares of pixels. What is
+/// expected beforehand, known to within itself, counts as one more measurement.
+double fit_bias(const GuidedRegion& r, const GuidedPlanes& planes, const ErrorModel& model,
+                int detail_class) {
+  const int width = r.counts.width, height = r.counts.height;
+  double product = 0, square = 0, variances = 0, spreads = 0;
+  for (int y0 = 0; y0 < height; y0 += block_px)
+    for (int x0 = 0; x0 < width; x0 += block_px) {
+      double risk = 0, spread = 0, noise = 0, doubt = 0;
+      for (int y = y0; y < std::min(y0 + block_px, height); ++y)
+        for (int x = x0; x < std::min(x0 + block_px, width); ++x) {
+          const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                static_cast<std::size_t>(x);
+          if (!r.counts.counts(i)) continue;
+          const double w = share_of_class(detail_class, r.detail[i]) * r.weight[i];
+          if (w == 0) continue;
+          const PixelErrors e = errors_of(r, planes, i);
+          const double variance = model.variance_scale(r.detail[i]) * e.variance;
+          // A half's variance is twice that of the mean of both.
+          risk += w * (e.risk - 2 * variance);
+          variances += w * variance;
+          spread += w * planes.spread[i];
+          noise += w * e.half_noise;
+          doubt += std::pow(w * e.half_noise, 2);  // two halves, each with twice this
+        }
+      if (!(noise > 0)) continue;
+      spreads += spread;
+      product += risk * spread / doubt;
+      square += spread * spread / doubt;
+    }
+  const double expected = spreads > 0 ? usual_bias * variances / spreads : 0;
+  if (!(expected > 0)) return 0;
+  const double before = 1 / (expected * expected);
+  return std::max(0.0, (product + before * expected) / (square + before));
+}
+
+ErrorModel fit_errors(const GuidedRegion& r, const GuidedPlanes& planes) {
+  ErrorModel model;
+  std::array<double, detail_classes> by_difference{}, by_weights{};
+  const std::size_t pixels = r.counts.seen.size();
+  for (std::size_t i = 0; i < pixels; ++i) {
+    if (!r.counts.counts(i)) continue;
+    const PixelErrors e = errors_of(r, planes, i);
+    for (int c = 0; c < detail_classes; ++c) {
+      const double w = share_of_class(c, r.detail[i]) * r.weight[i];
+      by_difference[c] += w * e.difference;
+      by_weights[c] += w * e.variance;
+    }
+  }
+  for (int c = 0; c < detail_classes; ++c)
+    model.variance[c] = by_weights[c] > 0 ? std::clamp(by_difference[c] / by_weights[c],
+                                                       1 / most_variance_scale, most_variance_scale)
+                                          : 1;
+  for (int c = 0; c < detail_classes; ++c) model.bias[c] = fit_bias(r, planes, model, c);
+  return model;
+}
+
+/// What is expected of a squared error, and what is seen around the pixel, weighed by how well each
+/// is known: the first within about itself, the second as well as counts of this noise tell.
+double combine(double expected, double seen, double half_noise) {
+  constexpr double share = 1 / (4 * std::numbers::pi * risk_sigma_px * risk_sigma_px);
+  const double prior = expected * expected, doubt = share * half_noise * half_noise;
+  if (!(prior > 0)) return expected;
+  return std::max(expected + prior / (prior + doubt) * (seen - expected), 0.5 * expected);
+}
+
+/// Squared errors as they are seen around each pixel.
+std::vector<double> errors_around(const GuidedRegion& r, const GuidedPlanes& planes,
+                                  const ErrorModel& model) {
+  const GaussianWindow window(risk_sigma_px);
+  std::vector<double> sums(r.counts.seen.size(), 0.0), seen = sums, scratch;
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    if (!r.counts.counts(i)) continue;
+    const PixelErrors e = errors_of(r, planes, i);
+    sums[i] = e.risk - model.variance_scale(r.detail[i]) * e.variance;
+    seen[i] = 1;
+  }
+  window.sum(sums, r.counts.width, r.counts.height, scratch);
+  window.sum(seen, r.counts.width, r.counts.height, scratch);
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    if (seen[i] > 0) sums[i] /= seen[i];
+  return sums;
+}
+
+void put(const GuidedRegion& r, const GuidedPlanes& planes, double library_cascades,
+         GuidedImage& out, double& gains, double& pixels) {
+  const ErrorModel model = fit_errors(r, planes);
+  const std::vector<double> around = errors_around(r, planes, model);
+  for (std::size_t i = 0; i < around.size(); ++i) {
+    if (!r.counts.counts(i)) continue;
+    const PixelErrors e = errors_of(r, planes, i);
+    double value = e.value;
+    const double noise = r.variance.of_mean(value, r.counts.primaries(i)),
+                 variance = model.variance_scale(r.detail[i]) * e.variance;
+    double square = combine(variance + model.bias_scale(r.detail[i]) * planes.spread[i], around[i],
+                            e.half_noise);
+    const double away = r.counts.mean(i) - value,
+                 beyond = std::abs(away) - most_deviations * std::sqrt(noise);
+    if (beyond > 0) {
+      value += std::copysign(beyond, away);
+      square = std::min(square + beyond * beyond, std::max(square, noise));
+    }
+    if (variance > 0)
+      out.radius_px.data()[i] = std::sqrt(std::max(1.0, noise / variance) * std::numbers::inv_pi);
+    if (square > 0) gains += noise / square;
+    pixels += 1;
+    if (library_cascades > 0) square += r.variance.of_one(value) / library_cascades;
+    out.mean.data()[i] = value;
+    out.error.data()[i] = std::sqrt(square);
+  }
+}
+
+}  // namespace
+
+GuidedImage estimate_guided(const CountImage& counts, const std::vector<Guide>& guides,
+                            const GuidedOptions& options) {
+  check(counts, guides, options.region);
+  const int width = counts[0].primaries.width(), height = counts[0].primaries.height();
+  GuidedImage out;
+  for (auto* plane : {&out.mean, &out.error, &out.radius_px})
+    *plane = Grid<double>(width, height, 0.0);
+  std::vector<PixelRange> tiles;
+  for (int y = 0; y < height; y += tile_px)
+    for (int x = 0; x < width; x += tile_px)
+      tiles.push_back({x, y, std::min(x + tile_px, width), std::min(y + tile_px, height)});
+  const std::set<int> numbers = numbers_of(options.region);
+  double gains = 0, pixels = 0, scales = 0, done = 0;
+  const double all = static_cast<double>(numbers.size() * tiles.size());
+  for (const int number : numbers) {
+    GuidedRegion r;
+    r.counts = region_counts(counts, options.region, number);
+    const std::vector<double> pilot = pilot_means(r.counts);
+    r.variance = fit_count_variance(r.counts, pilot);
+    double here = 0;
+    for (std::size_t h = 0; h < 2; ++h) {
+      r.noise[h].assign(pilot.size(), 0.0);
+      r.raw_noise[h].assign(pilot.size(), 0.0);
+      const HalfCounts& half = r.counts.halves[h];
+      for (std::size_t i = 0; i < pilot.size(); ++i) {
+        if (!r.counts.counts(i)) continue;
+        here += 0.5;
+        const double n = half.primaries[i];
+        r.noise[h][i] = r.variance.of_mean(pilot[i], n);
+        r.raw_noise[h][i] =
+            half.scatter[i] >= 0 ? r.variance.noise_scale * half.scatter[i] / n : r.noise[h][i];
+      }
+    }
+    if (here == 0) continue;
+    set_guides(guides, r);
+    set_weights(r);
+    set_detail(r);
+    GuidedPlanes planes;
+    planes.spread.assign(pilot.size(), 0.0);
+    for (HalfPlanes& half : planes.halves)
+      for (auto* plane : {&half.value, &half.variance, &half.leverage})
+        plane->assign(pilot.size(), 0.0);
+    for (const PixelRange& tile : tiles) {
+      options.watch.report(done++, all);
+      estimate_tile(r, tile, options.threads, planes);
+    }
+    put(r, planes, options.library_cascades, out, gains, pixels);
+    scales += here * r.variance.noise_scale;
+  }
+  options.watch.report(all, all);
+  if (pixels > 0) {
+    out.gain = gains / pixels;
+    out.noise_scale = scales / pixels;
+  }
+  return out;
+}
+
+}  // namespace surf
