@@ -10,6 +10,7 @@ set(SEMSURF_TOO_LONG_EMULATED
   "All/WatchedScan\\..*"
   "(FilterBank|FacetNetwork)\\.IsWatched"
   "EstimateSemNoise\\..*"
+  "GuidedEstimate\\..*"
   "MakeSelfAffine\\..*"
   "Reconstruct\\..*"
   "RegisterImages\\..*"
