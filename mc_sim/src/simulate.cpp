@@ -145,6 +145,19 @@ void SimulationContext::check(const SimulationOptions& options, const Scene& sce
     throw UsageError("`simulation.accuracy`",
                      "what observers see would be of more primaries in some pixels than in others",
                      "Give `simulation.electrons` instead");
+  if (const PrimaryNumbers* const numbers = options.primaries.get()) {
+    bool fits = true;
+    for (const auto* grid : {&numbers->first, &numbers->end})
+      fits = fits && grid->width() == scene.scan().width && grid->height() == scene.scan().height;
+    for (std::size_t i = 0; fits && i < numbers->first.size(); ++i)
+      fits = numbers->first.data()[i] >= 0 &&
+             numbers->end.data()[i] >= numbers->first.data()[i] &&
+             numbers->end.data()[i] <= std::int64_t{1} << 31;
+    if (!fits)
+      throw UsageError("numbers of primaries",
+                       "they are of another scan, or a pixel's first one is after its last",
+                       "Give first and end of each pixel of the scan, 0 to 2^31");
+  }
   if (scheduler && observers)
     throw UsageError("`output.deposit`", "each of several processes would see a part of it",
                      "Run it in one process");

@@ -12,6 +12,10 @@
 #include "checkpoint.h"
 #include "disk_needs.h"
 #include "extras.h"
+#include "guided/guide_model.h"
+#include "guided/guided_images.h"
+#include "guided/guided_simulation.h"
+#include "guided/scene_guides.h"
 #include "job_libraries.h"
 #include "provenance.h"
 #include "sidecar.h"
@@ -164,6 +168,7 @@ void keep_interrupted(const ResolvedJob& job, Checkpoint* checkpoint, const Note
 ImageRows labelled_image(const ResolvedJob& job, const mc::Scene& scene,
                          const SimulateSummary& summary) {
   ImageRows image = mc::make_image_rows(summary.result, summary.scan);
+  if (!summary.guided.empty()) show_guided(summary.result, summary.guided, image);
   add_channels(scene, job, summary.result, image);
   for (const auto& [key, value] : summary.record) image.head.metadata[key] = value;
   return image;
@@ -189,6 +194,12 @@ void write_all(const ResolvedJob& job, const ImageRows& image, SimulateSummary& 
 }
 
 }  // namespace
+
+Image image_of(const SimulateSummary& summary) {
+  ImageRows image = mc::make_image_rows(summary.result, summary.scan);
+  if (!summary.guided.empty()) show_guided(summary.result, summary.guided, image);
+  return to_image(image);
+}
 
 SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
                     const Simulator& given) {
@@ -225,6 +236,7 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
     facts = facts_of(job.scene.specimen, node, {{}, cancel});
     summary.scan = resolve_scan(job.scene.scan, facts.extent, job.scene.beam);
     check_trajectories(job, summary.scan);
+    if (job.estimate.kind == Estimate::guided) check_guided(job.options, summary.scan);
     // The first process's meshes are traced.
     if (node && !node->is_first())
       for (mc::Body& body : job.scene.specimen.bodies) body.mesh = {};
@@ -238,19 +250,33 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
       for (const std::string& warning : warn_of_full_disks(disk_needs(job, summary.scan)))
         warn(warning);
     note(warnings_of(job.scene.specimen, summary.simplification));
+    mc::SimulationOptions expected = job.options;
+    if (job.estimate.kind == Estimate::guided) {
+      expected = guided_options(job.options);
+      expected.budget = expected_budget(job.options.budget);
+    }
     summary.choice =
-        mc::choose_method(*ready, job.options, job.scene.method, {job.extras.deposit_cells > 0});
+        mc::choose_method(*ready, expected, job.scene.method, {job.extras.deposit_cells > 0});
     job.options.method = summary.choice.method;
   });
   const mc::Scene& scene = *ready;
   const io::SceneFile& s = job.scene;
+  const bool guided = job.estimate.kind == Estimate::guided;
+  GuideModel guide_model;
+  SceneGuides guides;
+  together(team, [&] {
+    if (!guided || !leads(team)) return;
+    guide_model = find_guide_model(job.estimate, scene, job.cache);
+    guides = guides_of(scene, guide_model, job.options.threads, reporter.watch());
+  });
   JobLibraries kept(job.cache, reporter.counting("cascades"), tell);
   std::optional<TeamLibraries> of_team;
   if (team) of_team.emplace(*team, kept);
   mc::LibrarySource& libraries = team ? static_cast<mc::LibrarySource&>(*of_team) : kept;
   Simulation simulation;
   const ProgressCallback progress =
-      reporter.counting(mc::accuracy_of(job.options.budget) > 0 ? "pixels" : "primaries");
+      reporter.counting(
+      mc::accuracy_of(job.options.budget) > 0 && !guided ? "pixels" : "primaries");
   std::optional<TeamScheduler> processes;
   if (team) processes.emplace(*team);
   mc::SimulationContext context{.watch = {progress, cancel},
@@ -264,8 +290,9 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
         mc::choose_method(scene, job.options, s.method, {job.extras.deposit_cells > 0});
     job.options.method = summary.choice.method;
   }
-  const auto settings = leads(team) ? provenance(job, summary.scan, record.inputs)
-                                    : std::map<std::string, std::string>();
+  auto settings = leads(team) ? provenance(job, summary.scan, record.inputs)
+                              : std::map<std::string, std::string>();
+  if (guided) settings["simulation.guided_by"] = guide_model.identity;
 
   std::optional<Deposits> deposits;
   if (job.extras.deposit_cells > 0) {
@@ -282,14 +309,26 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
     progress(done, total);
   };
   context.journal = checkpoint.get();
-  if (!simulation.final) simulation.result = simulator(scene, job.options, context);
+  if (guided) {
+    GuidedSimulation done =
+        simulate_guided(scene, job.options, guides, context, simulator, reporter, team);
+    simulation.result = std::move(done.result);
+    summary.guided = std::move(done.images);
+    summary.rounds = done.rounds;
+  } else if (!simulation.final) {
+    simulation.result = simulator(scene, job.options, context);
+  }
   summary.result = std::move(simulation.result);
   if (!leads(team)) return summary;
   if (team) summary.team = team->members();
   summary.pages_loaded = kept.pages().loaded;
   summary.pages_made = kept.pages().made;
   summary.statistics = mc::summarize(summary.result);
-  if (const double accuracy = mc::accuracy_of(summary.result.budget); accuracy > 0)
+  if (guided) {
+    summarize_accuracy(summary.guided, job.options.budget, summary.statistics);
+    summary.guided_by = guide_model.reason;
+  }
+  if (const double accuracy = mc::accuracy_of(job.options.budget); accuracy > 0)
     summary.tier = tier_doubt(scene.physics(), scene.materials().size(), accuracy);
   summary.charging = charging_of(scene.materials(), summary.result, scene.scan());
   // Before anything is written: a failure to write must not destroy the work.

@@ -5,6 +5,20 @@
 
 namespace surf::workflow {
 
+void describe(ParameterVisitor& visit, EstimateOptions& options) {
+  visit(options.kind, {"plain", "guided"},
+        {.name = "simulation.estimate",
+         .help = "A pixel's value from its own electrons alone (plain), or with the help of those "
+                 "around it (guided): far fewer electrons for the same error",
+         .otherwise = "plain"});
+  visit(options.model,
+        {.name = "simulation.guide_model",
+         .help = "Fast model that guides: a file, auto for one of the cache that fits, or off",
+         .otherwise = "auto",
+         .form = "FILE|auto|off",
+         .level = Level::advanced});
+}
+
 void describe(ParameterVisitor& visit, Extras& extras) {
   visit(extras.channels, {.name = "output.channels",
                           .help = "More channels. What the beam sees: z_nm, normal, material; how "
@@ -63,6 +77,7 @@ void describe(ParameterVisitor& visit, CheckpointOptions& checkpoint) {
 
 void describe(ParameterVisitor& visit, SimulateJob& job) {
   describe(visit, static_cast<mc::SimulationRequest&>(job.scene));
+  describe(visit, job.estimate);
   describe(visit, job.execution);
   describe_cache(visit, job.cache);
   describe(visit, job.extras);

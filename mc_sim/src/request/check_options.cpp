@@ -15,6 +15,10 @@ void check_options(const SimulationOptions& options) {
     throw UsageError("tile size", "a tile needs at least one pixel", "Ask for 1024, say");
   if (options.detectors.empty()) throw UsageError("detectors", "there are none", "Use SE and BSE");
   validate(options.detectors);
+  if (accuracy_of(options.budget) > 0 && (options.odd_counts || options.primaries))
+    throw UsageError("`simulation.accuracy`",
+                     "pixels then get as many primaries as they need, some compared with a plane",
+                     "Give a number of electrons, or simulate round by round");
   if (accuracy_of(options.budget) > 0 && options.spectra)
     throw UsageError(
         "`simulation.accuracy`",

@@ -124,6 +124,8 @@ void walk(Way& way, Tally& t) {
   way.expect(width * height);
   const std::size_t detectors = way.length(t.counts.size());
   way.expect(width * height * detectors);
+  const std::size_t odd = way.length(t.odd_counts.size());
+  way.expect(width * height * odd);
   const std::size_t controls = way.length(t.controls.size());
   way.expect(width * height * controls);
   const std::size_t spectra = way.length(t.spectra.size());
@@ -131,6 +133,7 @@ void walk(Way& way, Tally& t) {
     const int w = static_cast<int>(width), h = static_cast<int>(height);
     t.pixels = Grid<PixelTally>(w, h);
     t.counts.assign(detectors, Grid<Counts>(w, h));
+    t.odd_counts.assign(odd, Grid<Counts>(w, h));
     t.controls.assign(controls, Grid<Control>(w, h));
     t.spectra.resize(spectra);
   }
@@ -141,8 +144,9 @@ void walk(Way& way, Tally& t) {
     way.number(model);
     if constexpr (!std::is_const_v<Tally>) pixel.model = static_cast<PixelModel>(model);
   }
-  for (auto& grid : t.counts)
-    for (auto& pixel : grid.data()) counts(way, pixel);
+  for (auto* grids : {&t.counts, &t.odd_counts})
+    for (auto& grid : *grids)
+      for (auto& pixel : grid.data()) counts(way, pixel);
   for (auto& grid : t.controls)
     for (auto& c : grid.data())
       for (auto* value : {&c.mean, &c.standard_error, &c.variance_left}) way.number(*value);

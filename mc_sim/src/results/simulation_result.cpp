@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surf/mc/results/simulation_result.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -15,9 +16,11 @@ namespace {
 void check_shape(const SimulationResult& result, const WorkUnit& u, const UnitTally& tally) {
   bool fits = tally.counts.size() == result.counts.size() &&
               tally.controls.size() == result.controls.size() &&
+              tally.odd_counts.size() == result.odd_counts.size() &&
               tally.pixels.width() == u.x1 - u.x0 && tally.pixels.height() == u.y1 - u.y0 &&
               (result.spectra.empty() || tally.spectra.size() == result.spectra.size());
-  for (const auto& grid : tally.counts) fits = fits && grid.size() == tally.pixels.size();
+  for (const auto* grids : {&tally.counts, &tally.odd_counts})
+    for (const auto& grid : *grids) fits = fits && grid.size() == tally.pixels.size();
   if (!fits)
     throw InvalidInput("journal of units", "a unit's tally is of another simulation",
                        "Begin anew, without the journal");
@@ -55,6 +58,7 @@ Estimate SimulationResult::yield(std::size_t detector, int x, int y) const {
 void SimulationResult::release() const {
   pixels.release();
   for (const auto& grid : counts) grid.release();
+  for (const auto& grid : odd_counts) grid.release();
   for (const auto& grid : controls) grid.release();
 }
 
@@ -62,12 +66,14 @@ std::size_t tally_bytes(const Scan& scan, const SimulationOptions& options) {
   return static_cast<std::size_t>(scan.width) * static_cast<std::size_t>(scan.height) *
          (sizeof(PixelTally) +
           options.detectors.size() *
-              (sizeof(Counts) + (accuracy_of(options.budget) > 0 ? sizeof(Control) : 0)));
+              (sizeof(Counts) + (options.odd_counts ? sizeof(Counts) : 0) +
+               (accuracy_of(options.budget) > 0 ? sizeof(Control) : 0)));
 }
 
 UnitTally empty_tally(const WorkUnit& unit, const SimulationOptions& options) {
   UnitTally tally;
   clear(tally, unit, options.detectors.size());
+  if (options.odd_counts) tally.odd_counts = tally.counts;
   if (accuracy_of(options.budget) > 0)
     tally.controls.assign(options.detectors.size(),
                           Grid<Control>(tally.pixels.width(), tally.pixels.height()));
@@ -82,6 +88,8 @@ SimulationResult empty_result(const Scan& scan, const SimulationOptions& options
   result.pixels = LargeGrid<PixelTally>(scan.width, scan.height, folder);
   for (std::size_t d = 0; d < options.detectors.size(); ++d)
     result.counts.emplace_back(scan.width, scan.height, folder);
+  for (std::size_t d = 0; options.odd_counts && d < options.detectors.size(); ++d)
+    result.odd_counts.emplace_back(scan.width, scan.height, folder);
   for (std::size_t d = 0; accuracy_of(options.budget) > 0 && d < options.detectors.size(); ++d)
     result.controls.emplace_back(scan.width, scan.height, folder);
   result.budget = options.budget;
@@ -96,6 +104,8 @@ void merge(SimulationResult& result, const WorkUnit& u, const UnitTally& tally) 
       result.pixels(x, y) += tally.pixels(x - u.x0, y - u.y0);
       for (std::size_t d = 0; d < result.counts.size(); ++d)
         result.counts[d](x, y) += tally.counts[d](x - u.x0, y - u.y0);
+      for (std::size_t d = 0; d < result.odd_counts.size(); ++d)
+        result.odd_counts[d](x, y) += tally.odd_counts[d](x - u.x0, y - u.y0);
       for (std::size_t d = 0; d < result.controls.size(); ++d)
         result.controls[d](x, y) = tally.controls[d](x - u.x0, y - u.y0);
     }
@@ -103,6 +113,32 @@ void merge(SimulationResult& result, const WorkUnit& u, const UnitTally& tally) 
   else
     for (std::size_t d = 0; d < tally.spectra.size(); ++d) result.spectra[d] += tally.spectra[d];
   result.balance += tally.balance;
+}
+
+void add_round(SimulationResult& result, const SimulationResult& round) {
+  const int width = result.pixels.width(), height = result.pixels.height();
+  if (round.pixels.width() != width || round.pixels.height() != height ||
+      round.counts.size() != result.counts.size() ||
+      round.odd_counts.size() != result.odd_counts.size() || !round.controls.empty() ||
+      !result.controls.empty())
+    throw InvalidInput("round of a simulation", "it is of another image",
+                       "Add rounds of one scan and its detectors, without an accuracy");
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      result.pixels(x, y) += round.pixels(x, y);
+      for (std::size_t d = 0; d < result.counts.size(); ++d)
+        result.counts[d](x, y) += round.counts[d](x, y);
+      for (std::size_t d = 0; d < result.odd_counts.size(); ++d)
+        result.odd_counts[d](x, y) += round.odd_counts[d](x, y);
+    }
+  for (std::size_t d = 0; d < result.spectra.size() && d < round.spectra.size(); ++d)
+    result.spectra[d] += round.spectra[d];
+  result.balance += round.balance;
+  result.library_cascades = std::max(result.library_cascades, round.library_cascades);
+  result.library_seconds += round.library_seconds;
+  result.seconds += round.seconds;
+  result.recalled += round.recalled;
+  result.complete = result.complete && round.complete;
 }
 
 }  // namespace surf::mc

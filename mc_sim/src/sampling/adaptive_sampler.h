@@ -61,7 +61,7 @@ class AdaptiveSampler final : public UnitWorker {
       pixels_[i].is_open = !source_.misses(i) && !source_.settled(i);
       if (pixels_[i].is_open) ranges_[i].end = pilot_primaries;
     }
-    source_.serve(ranges_, [&](std::size_t i, bool hit, const auto& counts) {
+    source_.serve(ranges_, [&](std::size_t i, std::uint64_t, bool hit, const auto& counts) {
       Pixel& p = pixels_[i];
       p.hit |= hit;
       for (std::size_t d = 0; d < detectors_; ++d) {
@@ -146,7 +146,7 @@ class AdaptiveSampler final : public UnitWorker {
   }
 
   void count(UnitTally& out) {
-    source_.serve(ranges_, [&](std::size_t i, bool hit, const auto& counts) {
+    source_.serve(ranges_, [&](std::size_t i, std::uint64_t, bool hit, const auto& counts) {
       Pixel& p = pixels_[i];
       PixelTally& tally = out.pixels.data()[i];
       ++tally.primaries;

@@ -79,7 +79,7 @@ class DirectSource {
         const Gun::Start start = gun_.primary(x, y, random);
         const bool hit =
             transport.run(start.position, start.direction, scene_.beam.energy_ev, 0, random);
-        visit(i, hit,
+        visit(i, e, hit,
               [&](std::size_t d) { return std::pair<int, int>(detection_.counts()[d], 0); });
         detection_.end_primary();
       }

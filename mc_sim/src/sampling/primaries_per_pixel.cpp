@@ -8,9 +8,10 @@ namespace surf::mc {
 
 PrimariesPerPixel::PrimariesPerPixel(const Scan& scan, const SimulationOptions& o)
     : width_(scan.width), electrons_(electrons_of(o.budget)), dose_(dose_of(o.budget)),
-      seed_(o.seed) {}
+      seed_(o.seed), numbers_(o.primaries) {}
 
 std::int64_t PrimariesPerPixel::of(int x, int y) const {
+  if (numbers_) return numbers_->end(x, y) - numbers_->first(x, y);
   return dose_ > 0 ? primaries_of_pixel(dose_, seed_, number(x, y)) : electrons_;
 }
 

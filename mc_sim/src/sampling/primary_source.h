@@ -30,7 +30,7 @@ struct SourceTask {
 
 /// Stands in for a visitor in the concept below.
 struct VisitNothing {
-  void operator()(std::size_t, bool, const auto&) const {}
+  void operator()(std::size_t, std::uint64_t, bool, const auto&) const {}
 };
 
 /// Where the outcome of a primary comes from: it is simulated, or it is a stored cascade that is
@@ -41,7 +41,7 @@ struct VisitNothing {
 ///   primary is simulated begin(task)                  looks at the pixels of a unit serve(ranges,
 ///   visit)         simulates the primaries of `ranges`, one range for each pixel, in an order of
 ///   its own:
-///                                visit(pixel, hit, counts), where counts(detector) gives the
+///                                visit(pixel, number, hit, counts), where counts(detector) gives the
 ///                                electrons of the primary and those of its control (0 without).
 ///                                Throws Interrupted
 ///   finish(tally)                adds balance and spectra of all primaries since `begin`

@@ -130,7 +130,7 @@ class ReplaySource {
       start = replay_.gun().primary(p.x, p.y, random);
     }
     const bool hit = replay_.run(p.site, start, primary);
-    visit(i, hit, [&](std::size_t d) {
+    visit(i, electron, hit, [&](std::size_t d) {
       return std::pair<int, int>(replay_.detection().counts()[d],
                                  control ? control->counts[d][cascade] : 0);
     });

@@ -17,7 +17,7 @@ UnitPlan::UnitPlan(const Scan& scan, const SimulationOptions& options) : scan_(s
     return;
   }
   const PrimariesPerPixel primaries(scan, options);
-  if (const double dose = dose_of(options.budget); dose > 0) {
+  if (options.primaries || dose_of(options.budget) > 0) {
     for (int y = 0; y < scan.height; ++y)
       for (int x = 0; x < scan.width; ++x) {
         const std::int64_t n = primaries.of(x, y);

@@ -67,4 +67,7 @@ struct GuidedImage {
 GuidedImage estimate_guided(const CountImage& counts, const std::vector<Guide>& guides,
                             const GuidedOptions& options = {});
 
+/// Weighted mean of `values` in a Gaussian window around each pixel; 0 where no weight is near.
+Grid<double> mean_around(const Grid<double>& values, const Grid<double>& weights, double sigma_px);
+
 }  // namespace surf

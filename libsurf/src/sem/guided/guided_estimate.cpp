@@ -234,44 +234,59 @@ ErrorModel fit_errors(const GuidedRegion& r, const GuidedPlanes& planes) {
 }
 
 /// What is expected of a squared error, and what is seen around the pixel, weighed by how well each
-/// is known: the first within about itself, the second as well as counts of this noise tell.
-double combine(double expected, double seen, double half_noise) {
-  constexpr double share = 1 / (4 * std::numbers::pi * risk_sigma_px * risk_sigma_px);
-  const double prior = expected * expected, doubt = share * half_noise * half_noise;
+/// is known: the first within about itself, the second with a variance of `doubt`.
+double combine(double expected, double seen, double doubt) {
+  const double prior = expected * expected;
   if (!(prior > 0)) return expected;
   return std::max(expected + prior / (prior + doubt) * (seen - expected), 0.5 * expected);
 }
 
-/// Squared errors as they are seen around each pixel.
-std::vector<double> errors_around(const GuidedRegion& r, const GuidedPlanes& planes,
-                                  const ErrorModel& model) {
+/// What is seen of squared errors around each pixel, relative to yields squared.
+struct ErrorsAround {
+  std::vector<double> ratio;  ///< seen over expected
+  std::vector<double> doubt;  ///< variance of `ratio`, by the noise of the counts
+};
+
+ErrorsAround errors_around(const GuidedRegion& r, const GuidedPlanes& planes,
+                           const ErrorModel& model) {
   const GaussianWindow window(risk_sigma_px);
-  std::vector<double> sums(r.counts.seen.size(), 0.0), seen = sums, scratch;
-  for (std::size_t i = 0; i < sums.size(); ++i) {
+  const std::size_t pixels = r.counts.seen.size();
+  std::vector<double> seen(pixels, 0.0), expected = seen, doubt = seen, scratch;
+  for (std::size_t i = 0; i < pixels; ++i) {
     if (!r.counts.counts(i)) continue;
     const PixelErrors e = errors_of(r, planes, i);
-    sums[i] = e.risk - model.variance_scale(r.detail[i]) * e.variance;
-    seen[i] = 1;
+    const double variance = model.variance_scale(r.detail[i]) * e.variance;
+    seen[i] = r.weight[i] * (e.risk - variance);
+    expected[i] = r.weight[i] * (variance + model.bias_scale(r.detail[i]) * planes.spread[i]);
+    doubt[i] = std::pow(r.weight[i] * e.half_noise, 2);
   }
-  window.sum(sums, r.counts.width, r.counts.height, scratch);
   window.sum(seen, r.counts.width, r.counts.height, scratch);
-  for (std::size_t i = 0; i < sums.size(); ++i)
-    if (seen[i] > 0) sums[i] /= seen[i];
-  return sums;
+  window.sum(expected, r.counts.width, r.counts.height, scratch);
+  // Weights squared are a window narrower by the root of two.
+  const GaussianWindow squared(risk_sigma_px / std::numbers::sqrt2);
+  squared.sum(doubt, r.counts.width, r.counts.height, scratch);
+  const double narrower = window.middle() * window.middle() / squared.middle();
+  ErrorsAround around{std::vector<double>(pixels, 1.0), std::vector<double>(pixels, 0.0)};
+  for (std::size_t i = 0; i < pixels; ++i) {
+    if (!(expected[i] > 0)) continue;
+    around.ratio[i] = seen[i] / expected[i];
+    around.doubt[i] = narrower * doubt[i] / (expected[i] * expected[i]);
+  }
+  return around;
 }
 
 void put(const GuidedRegion& r, const GuidedPlanes& planes, double library_cascades,
          GuidedImage& out, double& gains, double& pixels) {
   const ErrorModel model = fit_errors(r, planes);
-  const std::vector<double> around = errors_around(r, planes, model);
-  for (std::size_t i = 0; i < around.size(); ++i) {
+  const ErrorsAround around = errors_around(r, planes, model);
+  for (std::size_t i = 0; i < around.ratio.size(); ++i) {
     if (!r.counts.counts(i)) continue;
     const PixelErrors e = errors_of(r, planes, i);
     double value = e.value;
     const double noise = r.variance.of_mean(value, r.counts.primaries(i)),
                  variance = model.variance_scale(r.detail[i]) * e.variance;
-    double square = combine(variance + model.bias_scale(r.detail[i]) * planes.spread[i], around[i],
-                            e.half_noise);
+    const double expected = variance + model.bias_scale(r.detail[i]) * planes.spread[i];
+    double square = expected * combine(1, around.ratio[i], around.doubt[i]);
     const double away = r.counts.mean(i) - value,
                  beyond = std::abs(away) - most_deviations * std::sqrt(noise);
     if (beyond > 0) {
@@ -289,6 +304,19 @@ void put(const GuidedRegion& r, const GuidedPlanes& planes, double library_casca
 }
 
 }  // namespace
+
+Grid<double> mean_around(const Grid<double>& values, const Grid<double>& weights,
+                         double sigma_px) {
+  const GaussianWindow window(sigma_px);
+  std::vector<double> sums(values.size()), seen = weights.data(), scratch;
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] = values.data()[i] * seen[i];
+  window.sum(sums, values.width(), values.height(), scratch);
+  window.sum(seen, values.width(), values.height(), scratch);
+  Grid<double> mean(values.width(), values.height(), 0.0);
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    if (seen[i] > 0) mean.data()[i] = sums[i] / seen[i];
+  return mean;
+}
 
 GuidedImage estimate_guided(const CountImage& counts, const std::vector<Guide>& guides,
                             const GuidedOptions& options) {

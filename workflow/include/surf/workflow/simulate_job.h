@@ -17,7 +17,9 @@
 #include "surf/mc/results/result_summary.h"
 #include "surf/mc/sampling/choose_method.h"
 #include "surf/mc/simulate.h"
+#include "surf/sem/guided_estimate.h"
 #include "surf/workflow/charging.h"
+#include "surf/workflow/estimate_options.h"
 #include "surf/workflow/reporter.h"
 #include "surf/workflow/simplify_specimen.h"
 #include "surf/workflow/team.h"
@@ -67,6 +69,7 @@ void describe(ParameterVisitor& visit, CheckpointOptions& checkpoint);
 struct SimulateJob {
   io::SceneFile scene;  ///< the requested simulation
   mc::Execution execution;
+  EstimateOptions estimate;
   bool spectra = false;         ///< record energies and angles per detector
   std::filesystem::path cache;  ///< where libraries are stored; empty: nowhere
   Extras extras;
@@ -84,6 +87,10 @@ void describe(ParameterVisitor& visit, SimulateJob& job);
 struct SimulateSummary {
   mc::SimulationResult result;
   mc::ResultSummary statistics;      ///< statistics of the result
+  /// Estimates per detector, with `Estimate::guided`; before the detector's efficiency.
+  std::vector<GuidedImage> guided;
+  std::string guided_by;  ///< what guided them, for people
+  int rounds = 1;         ///< of adding electrons
   std::optional<Charging> charging;  ///< of insulating materials
   /// With a wanted accuracy: whether the tier of physics is good enough for it.
   std::optional<std::string> tier;
@@ -99,6 +106,9 @@ struct SimulateSummary {
   std::vector<std::filesystem::path> written;  ///< outputs, extras and their .run.json sidecars
   std::vector<TeamMember> team;                ///< work of each member; none without a team
 };
+
+/// The image of a job without its extra channels: means and standard errors, or guided estimates.
+Image image_of(const SimulateSummary& summary);
 
 /// A function that replaces `mc::simulate`: it may take units done elsewhere, or let somebody
 /// watch.

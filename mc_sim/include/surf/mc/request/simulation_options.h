@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "surf/core/grid.h"
 #include "surf/core/parameters.h"
 #include "surf/mc/request/budget.h"
 #include "surf/mc/transport/detector.h"
@@ -27,8 +29,17 @@ struct Execution {
 
 void describe(ParameterVisitor& visit, Execution& execution);
 
+/// Primaries of each pixel, by number: from `first` to before `end`.
+struct PrimaryNumbers {
+  Grid<std::int64_t> first, end;  ///< of the scan's size, 0 <= first <= end <= 2^31
+};
+
 struct SimulationOptions : Execution {
   Budget budget;  ///< no TimeLimit
+  /// The primaries to simulate, in place of a budget of electrons per pixel: what is added to an
+  /// image in a further round. Null: those of the budget.
+  std::shared_ptr<const PrimaryNumbers> primaries;
+  bool odd_counts = false;  ///< also count primaries of odd number apart; not with an accuracy
   Method method = Method::direct;
   bool planar_control = true;  ///< with an accuracy: average the difference to a plane's outcome
   std::uint64_t seed = 1;
@@ -37,6 +48,7 @@ struct SimulationOptions : Execution {
   /// With an accuracy, all libraries together grow beyond their least size only up to this many
   /// bytes.
   double library_memory = 2.0 * (1u << 30);
+  std::size_t least_cascades = 0;  ///< of each library, for neighbours that share its error
 };
 
 }  // namespace surf::mc

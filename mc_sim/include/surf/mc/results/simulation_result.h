@@ -18,9 +18,10 @@ namespace surf::mc {
 struct SimulationResult {
   std::vector<Detector> detectors;  ///< as in the options
   LargeGrid<PixelTally> pixels;
-  std::vector<LargeGrid<Counts>> counts;     ///< per detector
-  std::vector<LargeGrid<Control>> controls;  ///< per detector, with `accuracy`
-  std::vector<Spectra> spectra;              ///< per detector, where asked for
+  std::vector<LargeGrid<Counts>> counts;      ///< per detector
+  std::vector<LargeGrid<Counts>> odd_counts;  ///< per detector, of odd primaries, where asked for
+  std::vector<LargeGrid<Control>> controls;   ///< per detector, with `accuracy`
+  std::vector<Spectra> spectra;               ///< per detector, where asked for
   Balance balance;
   Budget budget;  ///< as in the options
   std::uint64_t seed = 1;
@@ -62,5 +63,9 @@ SimulationResult empty_result(const Scan& scan, const SimulationOptions& options
 /// Adds a unit's tally; the order of units does not matter. Throws InvalidInput for one of another
 /// simulation.
 void merge(SimulationResult& result, const WorkUnit& unit, const UnitTally& tally);
+
+/// Adds a further round of the same image, of other primaries. Throws InvalidInput for one of
+/// another size, or with controls.
+void add_round(SimulationResult& result, const SimulationResult& round);
 
 }  // namespace surf::mc

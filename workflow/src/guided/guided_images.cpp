@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "guided/guided_images.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace surf::workflow {
+namespace {
+
+CountImage halves_of(const mc::SimulationResult& r, std::size_t d) {
+  CountImage counts;
+  const int width = r.pixels.width(), height = r.pixels.height();
+  for (CountHalf& half : counts)
+    for (auto* plane : {&half.primaries, &half.sum, &half.squares})
+      *plane = Grid<double>(width, height, 0.0);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const std::int64_t n = r.pixels(x, y).primaries;
+      const mc::Counts &all = r.counts[d](x, y), &odd = r.odd_counts[d](x, y);
+      counts[0].primaries(x, y) = static_cast<double>(n - n / 2);
+      counts[0].sum(x, y) = static_cast<double>(all.sum - odd.sum);
+      counts[0].squares(x, y) = static_cast<double>(all.squares - odd.squares);
+      counts[1].primaries(x, y) = static_cast<double>(n / 2);
+      counts[1].sum(x, y) = static_cast<double>(odd.sum);
+      counts[1].squares(x, y) = static_cast<double>(odd.squares);
+    }
+    r.release();
+  }
+  return counts;
+}
+
+}  // namespace
+
+std::vector<GuidedImage> estimate_images(const mc::SimulationResult& result,
+                                         const SceneGuides& guides, int threads,
+                                         const Watch& watch) {
+  std::vector<GuidedImage> images;
+  for (std::size_t d = 0; d < result.detectors.size(); ++d)
+    images.push_back(estimate_guided(
+        halves_of(result, d), guides.of(result.detectors[d].name),
+        {.region = guides.region,
+         .library_cascades = static_cast<double>(result.library_cascades),
+         .threads = threads,
+         .watch = watch.part(static_cast<double>(d) / static_cast<double>(result.detectors.size()),
+                             static_cast<double>(d + 1) /
+                                 static_cast<double>(result.detectors.size()))}));
+  return images;
+}
+
+void show_guided(const mc::SimulationResult& result, const std::vector<GuidedImage>& images,
+                 ImageRows& image) {
+  std::vector<std::pair<const GuidedImage*, double>> shown(image.head.channels.size(),
+                                                           {nullptr, 1.0});
+  std::vector<const Grid<double>*> planes(image.head.channels.size(), nullptr);
+  for (std::size_t c = 0; c < planes.size(); ++c)
+    for (std::size_t d = 0; d < images.size(); ++d) {
+      const std::string &name = image.head.channels[c].name, &own = result.detectors[d].name;
+      if (name != own && name != own + ".stderr") continue;
+      planes[c] = name == own ? &images[d].mean : &images[d].error;
+      shown[c] = {&images[d], result.detectors[d].efficiency};
+    }
+  image.read = [plain = std::move(image.read), planes = std::move(planes),
+                shown = std::move(shown)](std::size_t channel, int y, std::span<float> row) {
+    plain(channel, y, row);
+    if (!planes[channel]) return;
+    const auto& [estimate, efficiency] = shown[channel];
+    for (int x = 0; x < static_cast<int>(row.size()); ++x)
+      if (estimate->radius_px(x, y) > 0)
+        row[static_cast<std::size_t>(x)] =
+            static_cast<float>((*planes[channel])(x, y) * efficiency);
+  };
+}
+
+}  // namespace surf::workflow

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "guided/scene_guides.h"
+#include "surf/core/image_rows.h"
+#include "surf/mc/results/simulation_result.h"
+#include "surf/sem/guided_estimate.h"
+
+namespace surf::workflow {
+
+/// Estimates each detector's image from a result with `odd_counts`. Values are before the
+/// detector's efficiency.
+std::vector<GuidedImage> estimate_images(const mc::SimulationResult& result,
+                                         const SceneGuides& guides, int threads,
+                                         const Watch& watch);
+
+/// Puts estimates in place of the channels NAME and NAME.stderr of an image made of `result`.
+/// Pixels that were not estimated, such as those that the middle of the beam misses, keep their
+/// plain values. `images` and `result` must outlive the image.
+void show_guided(const mc::SimulationResult& result, const std::vector<GuidedImage>& images,
+                 ImageRows& image);
+
+}  // namespace surf::workflow

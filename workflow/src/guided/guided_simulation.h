@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "guided/scene_guides.h"
+#include "surf/mc/scheduling/unit_journal.h"
+#include "surf/mc/simulate.h"
+#include "surf/workflow/reporter.h"
+#include "surf/workflow/simulate_job.h"
+#include "surf/workflow/team.h"
+
+namespace surf::workflow {
+
+/// Electrons of each pixel before anything is known of it: 16 in either half.
+inline constexpr std::int64_t first_round_electrons = 32;
+/// Fewer electrons than this, on average, say too little of their own scatter.
+inline constexpr double fewest_guided_electrons = 8;
+
+/// Throws UsageError for what cannot be estimated with guides.
+void check_guided(const mc::SimulationOptions& options, const mc::Scan& scan);
+
+/// The options of guided simulations: counts in halves, and libraries whose own share of the error
+/// is small beside what is asked for.
+mc::SimulationOptions guided_options(mc::SimulationOptions options);
+
+/// What an accuracy is expected to take, as a number of electrons; other budgets as they are.
+mc::Budget expected_budget(const mc::Budget& budget);
+
+struct GuidedSimulation {
+  mc::SimulationResult result;
+  std::vector<GuidedImage> images;  ///< per detector; only of whoever leads
+  int rounds = 1;
+};
+
+/// Simulates and estimates. With an accuracy it does so round by round: each adds electrons where
+/// the estimated error is still too large, until it is not. All members of a team take part; the
+/// leader decides.
+GuidedSimulation simulate_guided(const mc::Scene& scene, const mc::SimulationOptions& options,
+                                 const SceneGuides& guides, const mc::SimulationContext& context,
+                                 const Simulator& simulator, const Reporter& reporter, Team* team);
+
+/// Fills in how well an accuracy was met.
+void summarize_accuracy(const std::vector<GuidedImage>& images, const mc::Budget& budget,
+                        mc::ResultSummary& summary);
+
+}  // namespace surf::workflow
