@@ -88,10 +88,26 @@ void print_electrons(const workflow::SimulateSummary& s) {
   print_line("electrons", fmt::format("{:.0f} per pixel on average, {} to {}", r.mean_electrons,
                                       r.fewest_electrons, r.most_electrons));
   print_line("accuracy", r.missed == 0
-                             ? fmt::format("{} reached in every pixel", format_share(accuracy))
+                             ? fmt::format("{} reached {}", format_share(accuracy),
+                                           s.gains.empty()
+                                               ? "in every pixel"
+                                               : fmt::format("around every pixel, in {} rounds",
+                                                             s.rounds))
                              : fmt::format("{} not reached in {} of {} pixels",
                                            format_share(accuracy), r.missed, r.seen));
   if (s.tier) print_line("physics", *s.tier);
+}
+
+void print_guided(const workflow::SimulateSummary& s) {
+  if (s.gains.empty()) return;
+  print_line("guided", s.guided_by);
+  for (std::size_t d = 0; d < s.gains.size(); ++d) {
+    const workflow::GuidedGain& gain = s.gains[d];
+    print_line("", fmt::format("{} to {:.2g} % of a pixel's yield, rms; plain {:.2g} %, worth {:.2g} "
+                               "times the electrons",
+                               s.result.detectors[d].name, 100 * gain.error_share,
+                               100 * gain.plain_share, gain.electrons()));
+  }
 }
 
 void print_speed(int threads, const workflow::SimulateSummary& s) {
@@ -126,6 +142,7 @@ void print_summary(int threads, const workflow::SimulateSummary& s) {
   print_library(s);
   print_models(s);
   print_electrons(s);
+  print_guided(s);
   print_speed(threads, s);
   print_simplified(s.simplification);
   if (s.scene.triangles_left_out > 0)

@@ -29,8 +29,9 @@ const Quantities& surface_quantities() {
   return all;
 }
 
-// Channels about the simulation; "variance_left" is one channel for each detector.
-constexpr std::array<const char*, 3> simulation_quantities{"electrons", "model", "variance_left"};
+// Channels about the simulation; from "variance_left" on there are some for each detector.
+constexpr std::array<const char*, 6> simulation_quantities{"electrons", "model",  "variance_left",
+                                                           "counts",    "radius", "plain"};
 
 bool is_simulation_quantity(const std::string& name) {
   return std::find(simulation_quantities.begin(), simulation_quantities.end(), name) !=
@@ -54,8 +55,21 @@ struct PixelChannel {
   std::function<double(int x, int y)> value;
 };
 
-// The result refers to `r`.
-std::vector<PixelChannel> simulation_channels(const Extras& extras, const mc::SimulationResult& r) {
+// What can be counted of a detector's primaries, all of them and those of odd number.
+void add_counts(const mc::SimulationResult& r, std::size_t d, std::vector<PixelChannel>& out) {
+  const std::string& name = r.detectors[d].name;
+  out.push_back({name + ".sum", [&r, d](int x, int y) { return double(r.counts[d](x, y).sum); }});
+  out.push_back(
+      {name + ".squares", [&r, d](int x, int y) { return double(r.counts[d](x, y).squares); }});
+  out.push_back(
+      {name + ".odd_sum", [&r, d](int x, int y) { return double(r.odd_counts[d](x, y).sum); }});
+  out.push_back({name + ".odd_squares",
+                 [&r, d](int x, int y) { return double(r.odd_counts[d](x, y).squares); }});
+}
+
+// The result refers to `r` and `guided`.
+std::vector<PixelChannel> simulation_channels(const Extras& extras, const mc::SimulationResult& r,
+                                              const std::vector<GuidedImage>& guided) {
   std::vector<PixelChannel> out;
   for (const char* wanted : simulation_quantities) {
     const std::string name = wanted;
@@ -69,10 +83,22 @@ std::vector<PixelChannel> simulation_channels(const Extras& extras, const mc::Si
                        return p.hits > 0 ? double(static_cast<int>(p.model)) : 0.0;
                      }});
     else
-      for (std::size_t d = 0; d < r.detectors.size(); ++d)
-        out.push_back({r.detectors[d].name + "." + name, [&r, d](int x, int y) {
-                         return r.controls.empty() ? 1.0 : r.controls[d](x, y).variance_left;
-                       }});
+      for (std::size_t d = 0; d < r.detectors.size(); ++d) {
+        const std::string& detector = r.detectors[d].name;
+        if (name == "counts") add_counts(r, d, out);
+        else if (name == "radius")
+          out.push_back({detector + ".radius",
+                         [&guided, d](int x, int y) { return guided[d].radius_px(x, y); }});
+        else if (name == "plain") {
+          out.push_back(
+              {detector + ".plain", [&r, d](int x, int y) { return r.yield(d, x, y).mean; }});
+          out.push_back({detector + ".plain.stderr",
+                         [&r, d](int x, int y) { return r.yield(d, x, y).standard_error; }});
+        } else
+          out.push_back({detector + "." + name, [&r, d](int x, int y) {
+                           return r.controls.empty() ? 1.0 : r.controls[d](x, y).variance_left;
+                         }});
+      }
   }
   return out;
 }
@@ -119,7 +145,8 @@ void check_extras(const Extras& extras) {
   for (const std::string& name : extras.channels)
     if (!surface_quantities().contains(name) && !is_simulation_quantity(name))
       throw UsageError("`output.channels`", fmt::format("there is no '{}'", name),
-                       "Choose among z_nm, normal, material, electrons, model and variance_left");
+                       "Choose among z_nm, normal, material, electrons, model, variance_left, counts, "
+                       "radius and plain");
   if (extras.deposit_cells < 0 || extras.deposit_cells > most_deposit_cells)
     throw UsageError("`output.deposit`",
                      fmt::format("{} cells are out of range", extras.deposit_cells),
@@ -131,6 +158,24 @@ void check_extras(const Extras& extras) {
   if (extras.trajectories_at_nm && extras.trajectories == 0)
     throw UsageError("`output.trajectories_at`", "no trajectories are asked for",
                      "Add `output.trajectories=50`");
+}
+
+bool wants_counts(const Extras& extras) {
+  return std::ranges::find(extras.channels, "counts") != extras.channels.end();
+}
+
+void check_extras_of(const ResolvedJob& job) {
+  const bool guided = job.estimate.kind == Estimate::guided;
+  for (const std::string& name : job.extras.channels)
+    if (!guided && (name == "radius" || name == "plain"))
+      throw UsageError("`output.channels`",
+                       fmt::format("'{}' is of guided estimates, and the image is a plain one", name),
+                       "Add `simulation.estimate=guided`, or leave it out");
+  if (wants_counts(job.extras) && !guided && mc::accuracy_of(job.options.budget) > 0)
+    throw UsageError("`output.channels`",
+                     "with an accuracy counts are of differences to planes, which tell nobody else "
+                     "anything",
+                     "Give `simulation.electrons`, or leave 'counts' out");
 }
 
 std::vector<fs::path> extra_files(const ResolvedJob& job) {
@@ -150,12 +195,13 @@ std::vector<std::string> extra_channels(const ResolvedJob& job) {
   std::vector<std::string> names = surface_channels(job.extras);
   mc::SimulationResult like;
   like.detectors = job.options.detectors;
-  for (const PixelChannel& c : simulation_channels(job.extras, like)) names.push_back(c.name);
+  for (const PixelChannel& c : simulation_channels(job.extras, like, {})) names.push_back(c.name);
   return names;
 }
 
 void add_channels(const mc::Scene& scene, const ResolvedJob& job,
-                  const mc::SimulationResult& result, ImageRows& image) {
+                  const mc::SimulationResult& result, const std::vector<GuidedImage>& guided,
+                  ImageRows& image) {
   if (const auto names = surface_channels(job.extras); !names.empty()) {
     const double bytes =
         4.0 * static_cast<double>(names.size()) * static_cast<double>(result.pixels.size());
@@ -164,7 +210,7 @@ void add_channels(const mc::Scene& scene, const ResolvedJob& job,
                                            large ? job.options.scratch_folder : std::string());
     append(image, std::move(seen.head.channels), std::move(seen.read));
   }
-  auto channels = simulation_channels(job.extras, result);
+  auto channels = simulation_channels(job.extras, result, guided);
   if (channels.empty()) return;
   std::vector<Channel> heads;
   for (const PixelChannel& c : channels) {

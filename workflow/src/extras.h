@@ -16,6 +16,12 @@ namespace surf::workflow {
 /// Throws UsageError for unknown channels and numbers out of range.
 void check_extras(const Extras& extras);
 
+/// Whether counts are to be kept in halves.
+bool wants_counts(const Extras& extras);
+
+/// Throws UsageError for channels that the job's way of estimating does not have.
+void check_extras_of(const ResolvedJob& job);
+
 /// The name of one extra file.
 std::filesystem::path extra_path(const ResolvedJob& job, const char* extension);
 
@@ -23,9 +29,10 @@ std::filesystem::path extra_path(const ResolvedJob& job, const char* extension);
 std::vector<std::filesystem::path> extra_files(const ResolvedJob& job);
 
 /// Adds the requested channels besides the detectors'. The metadata get the meaning of the numbers
-/// of materials and models. `image` refers to `result`.
+/// of materials and models. `image` refers to `result` and `guided`.
 void add_channels(const mc::Scene& scene, const ResolvedJob& job,
-                  const mc::SimulationResult& result, ImageRows& image);
+                  const mc::SimulationResult& result, const std::vector<GuidedImage>& guided,
+                  ImageRows& image);
 
 /// The names of the added channels whose values are labels.
 std::vector<std::string> label_channels();

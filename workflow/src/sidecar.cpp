@@ -101,6 +101,13 @@ Json method_json(const ResolvedJob& job, const SimulateSummary& s) {
   if (const double accuracy = mc::accuracy_of(s.result.budget); accuracy > 0)
     json["accuracy"] = {
         {"asked", accuracy}, {"pixels_missed", s.statistics.missed}, {"worst", s.statistics.worst}};
+  if (!s.gains.empty()) {
+    Json detectors = Json::object();
+    for (std::size_t d = 0; d < s.gains.size(); ++d)
+      detectors[s.result.detectors[d].name] = {{"error", s.gains[d].error_share},
+                                               {"plain_error", s.gains[d].plain_share}};
+    json["guided"] = {{"by", s.guided_by}, {"rounds", s.rounds}, {"detectors", detectors}};
+  }
   if (job.seconds() > 0) json["seconds_allowed"] = job.seconds();
   return json;
 }

@@ -169,7 +169,7 @@ ImageRows labelled_image(const ResolvedJob& job, const mc::Scene& scene,
                          const SimulateSummary& summary) {
   ImageRows image = mc::make_image_rows(summary.result, summary.scan);
   if (!summary.guided.empty()) show_guided(summary.result, summary.guided, image);
-  add_channels(scene, job, summary.result, image);
+  add_channels(scene, job, summary.result, summary.guided, image);
   for (const auto& [key, value] : summary.record) image.head.metadata[key] = value;
   return image;
 }
@@ -225,6 +225,7 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
       throw UsageError("`output.deposit`", "each of several processes would see a part of it",
                        "Run it in one process");
     job = resolve(std::move(asked));
+    check_extras_of(job);
     if (leads(team) && !job.outputs.empty()) {  // followers write nothing
       check_outputs(job);
       check_checkpoint(job);
@@ -327,6 +328,7 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
   if (guided) {
     summarize_accuracy(summary.guided, job.options.budget, summary.statistics);
     summary.guided_by = guide_model.reason;
+    summary.gains = gains_of(summary.result, summary.guided);
   }
   if (const double accuracy = mc::accuracy_of(job.options.budget); accuracy > 0)
     summary.tier = tier_doubt(scene.physics(), scene.materials().size(), accuracy);

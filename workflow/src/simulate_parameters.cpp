@@ -22,8 +22,8 @@ void describe(ParameterVisitor& visit, EstimateOptions& options) {
 void describe(ParameterVisitor& visit, Extras& extras) {
   visit(extras.channels, {.name = "output.channels",
                           .help = "More channels. What the beam sees: z_nm, normal, material; how "
-                                  "it was simulated: electrons, model, "
-                                  "variance_left",
+                                  "it was simulated: electrons, model, variance_left, counts; of "
+                                  "guided images: radius, plain",
                           .level = Level::advanced});
   const auto number = [&](int& count, const Parameter& about) {
     std::optional<int> given = count > 0 ? std::optional(count) : std::nullopt;

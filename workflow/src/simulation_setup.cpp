@@ -62,6 +62,7 @@ ResolvedJob resolve(SimulateJob asked) {
   }
   out.options = mc::options_of(out.scene, out.execution);
   out.options.spectra = out.spectra;
+  out.options.odd_counts = wants_counts(out.extras);
   if (const auto* const limit = std::get_if<mc::TimeLimit>(&out.scene.budget))
     out.options.budget = mc::Accuracy{coarse_accuracy, limit->floor};
   if (out.png_channel.empty())

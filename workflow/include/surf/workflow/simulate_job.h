@@ -39,7 +39,10 @@ mc::Scan resolve_scan(const mc::ScanRequest& request, const Box& specimen_extent
 struct Extras {
   /// Channels besides those of the detectors. What the beam sees: "z_nm", "normal" (three
   /// channels), "material". How each pixel was simulated: "electrons" (primaries whose counts were
-  /// kept), "model" (the number of the mc::PixelModel), "variance_left" (one channel per detector).
+  /// kept), "model" (the number of the mc::PixelModel), "variance_left" (one channel per detector). Of guided
+  /// images: "radius" (in pixels, of the disc whose mean would be as noisy), "plain" (mean and
+  /// standard error without guides). "counts": sums and sums of squares of the primaries' numbers,
+  /// of all and of those of odd number, from which `semsurf estimate` makes guided images.
   std::vector<std::string> channels;
   /// Deposited energy on a grid, with this many cells along its longest side.
   int deposit_cells = 0;
@@ -84,12 +87,23 @@ struct SimulateJob {
 /// All parameters except the specimen: the request, its execution, and the outputs.
 void describe(ParameterVisitor& visit, SimulateJob& job);
 
+/// What guides have brought a detector's image, over the pixels that see the specimen.
+struct GuidedGain {
+  double error_share = 0;  ///< root mean square of the error over the pixel's yield
+  double plain_share = 0;  ///< the same without guides, by the scatter of the counts
+  /// How many times as many electrons it would take without.
+  double electrons() const {
+    return error_share > 0 ? plain_share * plain_share / (error_share * error_share) : 1;
+  }
+};
+
 struct SimulateSummary {
   mc::SimulationResult result;
   mc::ResultSummary statistics;      ///< statistics of the result
   /// Estimates per detector, with `Estimate::guided`; before the detector's efficiency.
   std::vector<GuidedImage> guided;
-  std::string guided_by;  ///< what guided them, for people
+  std::vector<GuidedGain> gains;  ///< per detector, with `Estimate::guided`
+  std::string guided_by;          ///< what guided them, for people
   int rounds = 1;         ///< of adding electrons
   std::optional<Charging> charging;  ///< of insulating materials
   /// With a wanted accuracy: whether the tier of physics is good enough for it.
