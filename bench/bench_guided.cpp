@@ -49,7 +49,7 @@ workflow::SimulateJob job_of(const fs::path& scene, std::int64_t electrons, std:
 
 // Yield and variance of each detector, the library's share included.
 Image reference(const fs::path& folder, const fs::path& scene) {
-  const fs::path file = folder / (scene.stem().string() + "-reference.exr");
+  const fs::path file = folder / (scene.stem().string() + "-reference.tif");
   if (fs::exists(file)) return io::read_image(file);
   workflow::SimulateJob job = job_of(scene, reference_electrons, reference_seed);
   const auto simulator = [](const mc::Scene& s, const mc::SimulationOptions& options,

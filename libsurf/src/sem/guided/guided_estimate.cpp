@@ -22,8 +22,9 @@ using namespace guided;
 constexpr std::size_t most_guides = 15;
 constexpr double yield_sigma_px = 3;       // of the yields that errors are relative to
 constexpr double least_yield_share = 0.1;  // of the mean: darker pixels do not count for more
-// Squared bias over variance where nothing more is known: about what the best windows have.
-constexpr double usual_bias = 0.4;
+// Squared bias over spread, for each class of detail, where nothing more is known: as rough ground,
+// a mesa, a trench and a sphere have it (docs/development/guided_images.md).
+constexpr double usual_bias[detail_classes] = {0.25, 0.5, 0.8};
 constexpr double most_variance_scale = 4;
 constexpr double detail_sigma_px = 1.5;
 constexpr double detail_ranks[detail_classes] = {0.5, 0.85, 0.97};  // of the middle of each class
@@ -31,7 +32,7 @@ constexpr double risk_sigma_px = 5;  // of the pixels whose risk is averaged
 constexpr int block_px = 16;         // squares that Stein's risk is compared in
 // A pixel that differs from its estimate by more than this many standard deviations of its counts
 // keeps what is beyond (Efron and Morris 1972, doi:10.1080/01621459.1972.10481215).
-constexpr double most_deviations = 5;
+constexpr double most_deviations = 3.5;
 
 void check(const CountImage& counts, const std::vector<Guide>& guides, const Grid<int>& region) {
   const int width = counts[0].primaries.width(), height = counts[0].primaries.height();
@@ -181,7 +182,7 @@ struct ErrorModel {
 double fit_bias(const GuidedRegion& r, const GuidedPlanes& planes, const ErrorModel& model,
                 int detail_class) {
   const int width = r.counts.width, height = r.counts.height;
-  double product = 0, square = 0, variances = 0, spreads = 0;
+  double product = 0, square = 0;
   for (int y0 = 0; y0 < height; y0 += block_px)
     for (int x0 = 0; x0 < width; x0 += block_px) {
       double risk = 0, spread = 0, noise = 0, doubt = 0;
@@ -196,19 +197,15 @@ double fit_bias(const GuidedRegion& r, const GuidedPlanes& planes, const ErrorMo
           const double variance = model.variance_scale(r.detail[i]) * e.variance;
           // A half's variance is twice that of the mean of both.
           risk += w * (e.risk - 2 * variance);
-          variances += w * variance;
           spread += w * planes.spread[i];
           noise += w * e.half_noise;
           doubt += std::pow(w * e.half_noise, 2);  // two halves, each with twice this
         }
       if (!(noise > 0)) continue;
-      spreads += spread;
       product += risk * spread / doubt;
       square += spread * spread / doubt;
     }
-  const double expected = spreads > 0 ? usual_bias * variances / spreads : 0;
-  if (!(expected > 0)) return 0;
-  const double before = 1 / (expected * expected);
+  const double expected = usual_bias[detail_class], before = 1 / (expected * expected);
   return std::max(0.0, (product + before * expected) / (square + before));
 }
 
