@@ -27,6 +27,7 @@ void add_close(CLI::App& app, Action& action);
 void add_certainty(CLI::App& app, Action& action);
 void add_train(CLI::App& app, Action& action);
 void add_predict(CLI::App& app, Action& action);
+void add_estimate(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 void add_materials(CLI::App& app, Action& action);
 void add_library(CLI::App& app, Action& action);

@@ -103,10 +103,7 @@ void print_guided(const workflow::SimulateSummary& s) {
   print_line("guided", s.guided_by);
   for (std::size_t d = 0; d < s.gains.size(); ++d) {
     const workflow::GuidedGain& gain = s.gains[d];
-    print_line("", fmt::format("{} to {:.2g} % of a pixel's yield, rms; plain {:.2g} %, worth {:.2g} "
-                               "times the electrons",
-                               s.result.detectors[d].name, 100 * gain.error_share,
-                               100 * gain.plain_share, gain.electrons()));
+    print_line("", fmt::format("{} {}", s.result.detectors[d].name, format_gain(gain)));
   }
 }
 
@@ -133,6 +130,12 @@ void print_simplified(const workflow::Simplification& s) {
 }
 
 }  // namespace
+
+std::string format_gain(const workflow::GuidedGain& gain) {
+  return fmt::format(
+      "to {:.2g} % of a pixel's yield, rms; plain {:.2g} %: worth {:.2g} times the electrons",
+      100 * gain.error_share, 100 * gain.plain_share, gain.electrons());
+}
 
 void print_summary(int threads, const workflow::SimulateSummary& s) {
   print_image(s);

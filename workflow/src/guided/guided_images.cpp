@@ -2,10 +2,13 @@
 #include "guided/guided_images.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace surf::workflow {
 namespace {
+
+constexpr double least_yield_share = 0.05;  // of the mean: darker pixels do not count for more
 
 CountImage halves_of(const mc::SimulationResult& r, std::size_t d) {
   CountImage counts;
@@ -45,6 +48,34 @@ std::vector<GuidedImage> estimate_images(const mc::SimulationResult& result,
                              static_cast<double>(d + 1) /
                                  static_cast<double>(result.detectors.size()))}));
   return images;
+}
+
+GuidedGain gain_of(const GuidedImage& image, const Grid<double>& plain_error) {
+  double pixels = 0, sum = 0, guided = 0, plain = 0;
+  for (std::size_t i = 0; i < image.mean.size(); ++i)
+    if (image.radius_px.data()[i] > 0) pixels += 1, sum += image.mean.data()[i];
+  if (!(sum > 0)) return {};
+  const double least = least_yield_share * sum / pixels;
+  for (std::size_t i = 0; i < image.mean.size(); ++i) {
+    if (!(image.radius_px.data()[i] > 0)) continue;
+    const double yield = std::max(image.mean.data()[i], least);
+    guided += std::pow(image.error.data()[i] / yield, 2);
+    plain += std::pow(plain_error.data()[i] / yield, 2);
+  }
+  return {std::sqrt(guided / pixels), std::sqrt(plain / pixels)};
+}
+
+std::vector<GuidedGain> gains_of(const mc::SimulationResult& result,
+                                 const std::vector<GuidedImage>& images) {
+  std::vector<GuidedGain> gains;
+  Grid<double> plain(result.pixels.width(), result.pixels.height());
+  for (std::size_t d = 0; d < images.size(); ++d) {
+    for (int y = 0; y < plain.height(); ++y)
+      for (int x = 0; x < plain.width(); ++x)
+        plain(x, y) = result.yield(d, x, y).standard_error / result.detectors[d].efficiency;
+    gains.push_back(gain_of(images[d], plain));
+  }
+  return gains;
 }
 
 void show_guided(const mc::SimulationResult& result, const std::vector<GuidedImage>& images,

@@ -7,6 +7,7 @@
 #include "surf/core/image_rows.h"
 #include "surf/mc/results/simulation_result.h"
 #include "surf/sem/guided_estimate.h"
+#include "surf/workflow/simulate_job.h"
 
 namespace surf::workflow {
 
@@ -15,6 +16,12 @@ namespace surf::workflow {
 std::vector<GuidedImage> estimate_images(const mc::SimulationResult& result,
                                          const SceneGuides& guides, int threads,
                                          const Watch& watch);
+
+/// What guides have brought one detector, whose plain standard errors are given before its
+/// efficiency. Yields below a twentieth of the mean count as that much.
+GuidedGain gain_of(const GuidedImage& image, const Grid<double>& plain_error);
+std::vector<GuidedGain> gains_of(const mc::SimulationResult& result,
+                                 const std::vector<GuidedImage>& images);
 
 /// Puts estimates in place of the channels NAME and NAME.stderr of an image made of `result`.
 /// Pixels that were not estimated, such as those that the middle of the beam misses, keep their

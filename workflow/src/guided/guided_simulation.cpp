@@ -24,7 +24,7 @@ constexpr int most_rounds = 24;
 constexpr double most_growth = 4;        // of a pixel's electrons in a round
 constexpr double around_px = 5;          // of the neighbourhood that an accuracy is reached in
 constexpr double least_target = 1e-9;
-constexpr double least_yield_share = 0.05;  // of the mean: darker pixels do not count for more
+
 constexpr double reserve = 1.1;          // over what the estimate of the error asks for
 // Cascades for each electron of a pixel: a guided pixel is the mean of up to a hundred, and the
 // library's share of its variance is to be a fifth of that.
@@ -209,33 +209,6 @@ GuidedSimulation simulate_guided(const mc::Scene& scene, const mc::SimulationOpt
   }
   out.result.budget = asked.budget;
   return out;
-}
-
-std::vector<GuidedGain> gains_of(const mc::SimulationResult& result,
-                                 const std::vector<GuidedImage>& images) {
-  std::vector<GuidedGain> gains;
-  for (std::size_t d = 0; d < images.size(); ++d) {
-    const GuidedImage& image = images[d];
-    double pixels = 0, sum = 0, guided = 0, plain = 0;
-    for (std::size_t i = 0; i < image.mean.size(); ++i)
-      if (image.radius_px.data()[i] > 0) pixels += 1, sum += image.mean.data()[i];
-    if (!(sum > 0)) {
-      gains.emplace_back();
-      continue;
-    }
-    const double least = least_yield_share * sum / pixels,
-                 efficiency = result.detectors[d].efficiency;
-    for (int y = 0; y < image.mean.height(); ++y)
-      for (int x = 0; x < image.mean.width(); ++x) {
-        if (!(image.radius_px(x, y) > 0)) continue;
-        const double yield = std::max(image.mean(x, y), least);
-        guided += std::pow(image.error(x, y) / yield, 2);
-        plain +=
-            std::pow(result.yield(d, x, y).standard_error / (efficiency * yield), 2);
-      }
-    gains.push_back({std::sqrt(guided / pixels), std::sqrt(plain / pixels)});
-  }
-  return gains;
 }
 
 void summarize_accuracy(const std::vector<GuidedImage>& images, const mc::Budget& budget,

@@ -41,10 +41,6 @@ GuidedSimulation simulate_guided(const mc::Scene& scene, const mc::SimulationOpt
                                  const SceneGuides& guides, const mc::SimulationContext& context,
                                  const Simulator& simulator, const Reporter& reporter, Team* team);
 
-/// Yields below a twentieth of the mean count as that much.
-std::vector<GuidedGain> gains_of(const mc::SimulationResult& result,
-                                 const std::vector<GuidedImage>& images);
-
 /// Fills in how well an accuracy was met.
 void summarize_accuracy(const std::vector<GuidedImage>& images, const mc::Budget& budget,
                         mc::ResultSummary& summary);

@@ -20,34 +20,39 @@ std::vector<Guide> SceneGuides::of(const std::string& detector) const {
   return guides;
 }
 
-SceneGuides guides_of(const mc::Scene& scene, const GuideModel& model, int threads,
-                      const Watch& watch) {
-  const mc::Scan& scan = scene.scan();
-  const Image view = mc::surface_view(scene, threads);
+SeenSurface seen_surface(const Image& view, const mc::Beam& beam, Grid<int>& region) {
   const auto channel = [&](const char* name) -> const Grid<float>& {
-    return std::ranges::find(view.channels, name, &Channel::name)->values;
+    return view.find(name)->values;
   };
   const Grid<float>&z = channel("z_nm"), &nx = channel("normal.x"), &ny = channel("normal.y"),
                     &nz = channel("normal.z"), &material = channel("material"),
                     &valid = channel("valid");
-  const Vec3 beam = direction(scene.beam());
-  SeenSurface surface{scan.pixel_x_nm,
-                      scan.pixel_y_nm,
-                      Grid<double>(scan.width, scan.height, 0.0),
-                      Grid<double>(scan.width, scan.height, 0.0),
-                      Grid<std::uint8_t>(scan.width, scan.height, 0),
-                      scene.beam().spot_nm};
-  SceneGuides guides;
-  guides.region = Grid<int>(scan.width, scan.height, -1);
+  const Vec3 along = direction(beam);
+  const int width = z.width(), height = z.height();
+  SeenSurface surface{view.pitch_x_nm,
+                      view.pitch_y_nm,
+                      Grid<double>(width, height, 0.0),
+                      Grid<double>(width, height, 0.0),
+                      Grid<std::uint8_t>(width, height, 0),
+                      beam.spot_nm};
+  region = Grid<int>(width, height, -1);
   for (std::size_t i = 0; i < valid.size(); ++i) {
     if (!(valid.data()[i] > 0)) continue;
     surface.seen.data()[i] = 1;
-    // Along the beam: where it starts makes no difference across a scan plane.
-    surface.height_nm.data()[i] = (z.data()[i] - scan.center_z_nm) / -beam.z;
+    // Along the beam: a shift of all heights makes no difference.
+    surface.height_nm.data()[i] = z.data()[i] / -along.z;
     surface.cosine.data()[i] =
-        -(nx.data()[i] * beam.x + ny.data()[i] * beam.y + nz.data()[i] * beam.z);
-    guides.region.data()[i] = static_cast<int>(std::lround(material.data()[i]));
+        -(nx.data()[i] * along.x + ny.data()[i] * along.y + nz.data()[i] * along.z);
+    region.data()[i] = static_cast<int>(std::lround(material.data()[i]));
   }
+  return surface;
+}
+
+SceneGuides guides_of(const mc::Scene& scene, const GuideModel& model, int threads,
+                      const Watch& watch) {
+  SceneGuides guides;
+  const SeenSurface surface =
+      seen_surface(mc::surface_view(scene, threads), scene.beam(), guides.region);
   guides.shape = shape_guides(surface, threads, watch);
   guides.predicted = predicted_guides(model, surface, threads, watch);
   return guides;

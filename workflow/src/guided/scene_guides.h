@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "guided/guide_model.h"
+#include "surf/core/image.h"
 #include "surf/mc/geometry/scene.h"
 #include "surf/sem/guided_estimate.h"
 
@@ -19,6 +20,10 @@ struct SceneGuides {
   /// others as mere guides; then shape.
   std::vector<Guide> of(const std::string& detector) const;
 };
+
+/// The surface and the materials that a view of a scene shows (mc::surface_view), along the beam.
+/// `region` is set as in `SceneGuides`.
+SeenSurface seen_surface(const Image& view, const mc::Beam& beam, Grid<int>& region);
 
 SceneGuides guides_of(const mc::Scene& scene, const GuideModel& model, int threads,
                       const Watch& watch);

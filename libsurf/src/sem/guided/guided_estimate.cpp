@@ -32,7 +32,7 @@ constexpr double risk_sigma_px = 5;  // of the pixels whose risk is averaged
 constexpr int block_px = 16;         // squares that Stein's risk is compared in
 // A pixel that differs from its estimate by more than this many standard deviations of its counts
 // keeps what is beyond (Efron and Morris 1972, doi:10.1080/01621459.1972.10481215).
-constexpr double most_deviations = 3.5;
+constexpr double most_deviations = 4;
 
 void check(const CountImage& counts, const std::vector<Guide>& guides, const Grid<int>& region) {
   const int width = counts[0].primaries.width(), height = counts[0].primaries.height();
