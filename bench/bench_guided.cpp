@@ -5,11 +5,12 @@
 // judge it. Each is guided by shape, silicon also by samples/si-1keV-3nm.json beside SCENES; the
 // scene "gold" is guided by that model, too, which is wrong there. References of 1500 electrons per
 // pixel from libraries of 120,000 cascades of another seed are kept in FOLDER; what their own noise
-// adds is taken out. Columns, for each detector and region (flat: where the reference changes least,
-// edge: most, dark: the darkest fifth):
+// adds is taken out. Columns, for each detector and region (flat: where the reference changes
+// least, edge: most, dark: the darkest fifth):
 //   plain, guided   rms of the error over the yield around, %
 //   worth           how many times the electrons plain images take for the guided error
 //   ratio           rms of the error over that which is stated
+//   z               rms of the ratio of the two, pixel by pixel
 //   1s, 2s          % of pixels within one and two stated errors (68 and 95 would be right)
 //   95 %, max       of |error| over the yield around, %, the reference's noise included
 #include <algorithm>
@@ -49,7 +50,7 @@ workflow::SimulateJob job_of(const fs::path& scene, std::int64_t electrons, std:
 
 // Yield and variance of each detector, the library's share included.
 Image reference(const fs::path& folder, const fs::path& scene) {
-  const fs::path file = folder / (scene.stem().string() + "-reference.tif");
+  const fs::path file = folder / (scene.stem().string() + "-reference.exr");
   if (fs::exists(file)) return io::read_image(file);
   workflow::SimulateJob job = job_of(scene, reference_electrons, reference_seed);
   const auto simulator = [](const mc::Scene& s, const mc::SimulationOptions& options,
@@ -60,10 +61,10 @@ Image reference(const fs::path& folder, const fs::path& scene) {
   };
   const workflow::SimulateSummary done = workflow::run(std::move(job), {}, nullptr, simulator);
   Image image = workflow::image_of(done);
-  const double share = done.result.library_cascades > 0
-                           ? std::sqrt(1 + double(reference_electrons) /
-                                               double(done.result.library_cascades))
-                           : 1;
+  const double share =
+      done.result.library_cascades > 0
+          ? std::sqrt(1 + double(reference_electrons) / double(done.result.library_cascades))
+          : 1;
   for (Channel& c : image.channels)
     if (c.name.ends_with(".stderr"))
       for (float& value : c.values.data()) value *= static_cast<float>(share);
@@ -76,7 +77,8 @@ const Grid<float>& channel(const Image& image, const std::string& name) {
 }
 
 struct Sums {
-  double pixels = 0, plain = 0, guided = 0, stated = 0, within_1 = 0, within_2 = 0, doubtful = 0;
+  double pixels = 0, plain = 0, guided = 0, stated = 0, within_1 = 0, within_2 = 0, doubtful = 0,
+         z = 0;
   std::vector<double> errors;
 };
 
@@ -87,8 +89,8 @@ std::vector<std::vector<std::string>> regions_of(const Grid<double>& yield) {
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const auto at = [&](int u, int v) {
-        return std::log(std::max(
-            yield(std::clamp(u, 0, width - 1), std::clamp(v, 0, height - 1)), 1e-4));
+        return std::log(
+            std::max(yield(std::clamp(u, 0, width - 1), std::clamp(v, 0, height - 1)), 1e-4));
       };
       slope[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
             static_cast<std::size_t>(x)] =
@@ -133,8 +135,9 @@ void compare(const fs::path& folder, const fs::path& scenes, const std::string& 
     for (std::size_t d = 0; d < done.result.detectors.size(); ++d) {
       const std::string detector = done.result.detectors[d].name;
       const Grid<float>&yields = channel(truth, detector),
-                       &noise = channel(truth, detector + ".stderr");
-      Grid<double> around(yields.width(), yields.height()), ones(yields.width(), yields.height(), 1.0);
+            &noise = channel(truth, detector + ".stderr");
+      Grid<double> around(yields.width(), yields.height()),
+          ones(yields.width(), yields.height(), 1.0);
       std::ranges::copy(yields.data(), around.data().begin());
       around = mean_around(around, ones, 2);
       const double least = 0.05 * mean_around(around, ones, 1000)(0, 0);
@@ -156,6 +159,7 @@ void compare(const fs::path& folder, const fs::path& scenes, const std::string& 
             s.guided += guided * guided - own;
             s.stated += stated * stated;
             s.doubtful += own;
+            s.z += (guided * guided - own) / (stated * stated);
             s.within_1 += std::abs(guided) <= expected;
             s.within_2 += std::abs(guided) <= 2 * expected;
             s.errors.push_back(std::abs(guided));
@@ -173,13 +177,15 @@ void compare(const fs::path& folder, const fs::path& scenes, const std::string& 
       const auto percent = [&](double square) {
         return 100 * std::sqrt(std::max(0.0, square) / s.pixels);
       };
-      fmt::print("  {:4} {:5} plain {:5.1f} guided {:5.2f} worth {:6.1f} ratio {:5.2f} 1s {:5.1f} "
-                 "2s {:5.1f} 95 % {:5.1f} max {:5.1f} (reference {:.2f})\n",
-                 detector, region, percent(s.plain), percent(s.guided), s.plain / s.guided,
-                 std::sqrt(std::max(0.0, s.guided) / s.stated), 100 * s.within_1 / s.pixels,
-                 100 * s.within_2 / s.pixels,
-                 100 * s.errors[static_cast<std::size_t>(0.95 * (s.pixels - 1))],
-                 100 * s.errors.back(), percent(s.doubtful));
+      fmt::print(
+          "  {:4} {:5} plain {:5.1f} guided {:5.2f} worth {:6.1f} ratio {:5.2f} z {:5.2f} 1s "
+          "{:5.1f} "
+          "2s {:5.1f} 95 % {:5.1f} max {:5.1f} (reference {:.2f})\n",
+          detector, region, percent(s.plain), percent(s.guided), s.plain / s.guided,
+          std::sqrt(std::max(0.0, s.guided) / s.stated), std::sqrt(std::max(0.0, s.z) / s.pixels),
+          100 * s.within_1 / s.pixels, 100 * s.within_2 / s.pixels,
+          100 * s.errors[static_cast<std::size_t>(0.95 * (s.pixels - 1))], 100 * s.errors.back(),
+          percent(s.doubtful));
     }
   std::fflush(stdout);
 }

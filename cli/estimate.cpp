@@ -37,8 +37,7 @@ struct Options {
 int estimate(const Options& o) {
   workflow::EstimateJob job;
   o.bound.apply(job);
-  if (o.image.empty())
-    throw UsageError("IMAGE", "no image is given", "Name one that has counts");
+  if (o.image.empty()) throw UsageError("IMAGE", "no image is given", "Name one that has counts");
   if (job.outputs.empty())
     throw UsageError("`output`", "no output file is given", "Add `output=guided.exr`");
   job.input = o.image;
@@ -56,8 +55,7 @@ int estimate(const Options& o) {
   std::string by;
   for (const std::string& guide : s.guides) by += (by.empty() ? "" : ", ") + guide;
   line("guided by", by.empty() ? "neighbours alone: the image shows no surface" : by);
-  for (std::size_t d = 0; d < s.gains.size(); ++d)
-    line(s.detectors[d], format_gain(s.gains[d]));
+  for (std::size_t d = 0; d < s.gains.size(); ++d) line(s.detectors[d], format_gain(s.gains[d]));
   std::string label = "written";
   for (const auto& output : job.outputs) {
     line(label, output.string());
@@ -72,8 +70,9 @@ void add_estimate(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand(
       "estimate", "A simulated image of few electrons, estimated with the help of neighbours");
-  with_role(sub->add_option("IMAGE", o->image, "An image with counts (EXR, TIFF)")->type_name("FILE"),
-            FileRole::read);
+  with_role(
+      sub->add_option("IMAGE", o->image, "An image with counts (EXR, TIFF)")->type_name("FILE"),
+      FileRole::read);
   o->bound.headings = {{"estimate", "Guides"}, {"output", "Output"}, {"job", "Output"}};
   o->bound.looks["output"] = {.name = "-o,--output"};
   o->bound.add<workflow::EstimateJob>(*sub, "");

@@ -87,14 +87,14 @@ void print_electrons(const workflow::SimulateSummary& s) {
   if (accuracy <= 0) return;
   print_line("electrons", fmt::format("{:.0f} per pixel on average, {} to {}", r.mean_electrons,
                                       r.fewest_electrons, r.most_electrons));
-  print_line("accuracy", r.missed == 0
-                             ? fmt::format("{} reached {}", format_share(accuracy),
-                                           s.gains.empty()
-                                               ? "in every pixel"
-                                               : fmt::format("around every pixel, in {} rounds",
-                                                             s.rounds))
-                             : fmt::format("{} not reached in {} of {} pixels",
-                                           format_share(accuracy), r.missed, r.seen));
+  print_line(
+      "accuracy",
+      r.missed == 0
+          ? fmt::format("{} reached {}", format_share(accuracy),
+                        s.gains.empty() ? "in every pixel"
+                                        : fmt::format("around every pixel, in {} rounds", s.rounds))
+          : fmt::format("{} not reached in {} of {} pixels", format_share(accuracy), r.missed,
+                        r.seen));
   if (s.tier) print_line("physics", *s.tier);
 }
 

@@ -150,8 +150,7 @@ void SimulationContext::check(const SimulationOptions& options, const Scene& sce
     for (const auto* grid : {&numbers->first, &numbers->end})
       fits = fits && grid->width() == scene.scan().width && grid->height() == scene.scan().height;
     for (std::size_t i = 0; fits && i < numbers->first.size(); ++i)
-      fits = numbers->first.data()[i] >= 0 &&
-             numbers->end.data()[i] >= numbers->first.data()[i] &&
+      fits = numbers->first.data()[i] >= 0 && numbers->end.data()[i] >= numbers->first.data()[i] &&
              numbers->end.data()[i] <= std::int64_t{1} << 31;
     if (!fits)
       throw UsageError("numbers of primaries",

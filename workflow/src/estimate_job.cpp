@@ -12,8 +12,8 @@
 #include "guided/guided_images.h"
 #include "guided/scene_guides.h"
 #include "surf/core/error.h"
-#include "surf/io/image_file.h"
 #include "surf/io/files.h"
+#include "surf/io/image_file.h"
 #include "surf/io/model/model_file.h"
 #include "surf/io/overlaps.h"
 #include "surf/workflow/step_record.h"
@@ -31,8 +31,7 @@ std::vector<std::string> detectors_of(const Image& image) {
   for (const Channel& channel : image.channels) {
     if (!channel.name.ends_with(".odd_sum")) continue;
     const std::string name = channel.name.substr(0, channel.name.size() - 8);
-    if (std::ranges::all_of(endings,
-                            [&](const char* ending) { return image.find(name + ending); }))
+    if (std::ranges::all_of(endings, [&](const char* ending) { return image.find(name + ending); }))
       names.push_back(name);
   }
   return names;
@@ -43,9 +42,8 @@ CountImage counts_of(const Image& image, const std::string& detector) {
     return image.find(name)->values;
   };
   const Grid<float>&electrons = plane("electrons"), &sum = plane(detector + ".sum"),
-                    &squares = plane(detector + ".squares"),
-                    &odd_sum = plane(detector + ".odd_sum"),
-                    &odd_squares = plane(detector + ".odd_squares");
+        &squares = plane(detector + ".squares"), &odd_sum = plane(detector + ".odd_sum"),
+        &odd_squares = plane(detector + ".odd_squares");
   CountImage counts;
   for (CountHalf& half : counts)
     for (auto* to : {&half.primaries, &half.sum, &half.squares})
@@ -207,7 +205,8 @@ EstimateSummary run(const EstimateJob& job, const Reporter& reporter) {
     throw InvalidInput(subject, "it has no counts to estimate from",
                        "Simulate with `output.channels=counts,electrons,z_nm,normal,material`");
   for (const std::string& name : summary.detectors)
-    channel_of(image, name), channel_of(image, name + ".stderr"), channel_of(image, name + ".radius");
+    channel_of(image, name), channel_of(image, name + ".stderr"),
+        channel_of(image, name + ".radius");
   check_outputs(job, image);
   const SceneGuides guides = guides_in(image, job, watch);
   for (const Guide& guide : guides.predicted) summary.guides.push_back("predicted " + guide.name);
@@ -231,8 +230,8 @@ EstimateSummary run(const EstimateJob& job, const Reporter& reporter) {
          .watch = watch.part(share * static_cast<double>(d), share * static_cast<double>(d + 1))});
     const double efficiency = efficiency_of(image, name);
     Grid<float>&mean = channel_of(image, name).values,
-               &error = channel_of(image, name + ".stderr").values,
-               &radius = channel_of(image, name + ".radius").values;
+    &error = channel_of(image, name + ".stderr").values,
+    &radius = channel_of(image, name + ".radius").values;
     for (std::size_t i = 0; i < mean.size(); ++i) {
       radius.data()[i] = static_cast<float>(guided.radius_px.data()[i]);
       if (!(guided.radius_px.data()[i] > 0)) continue;  // as it was

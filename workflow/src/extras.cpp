@@ -144,9 +144,10 @@ fs::path extra_path(const ResolvedJob& job, const char* extension) {
 void check_extras(const Extras& extras) {
   for (const std::string& name : extras.channels)
     if (!surface_quantities().contains(name) && !is_simulation_quantity(name))
-      throw UsageError("`output.channels`", fmt::format("there is no '{}'", name),
-                       "Choose among z_nm, normal, material, electrons, model, variance_left, counts, "
-                       "radius and plain");
+      throw UsageError(
+          "`output.channels`", fmt::format("there is no '{}'", name),
+          "Choose among z_nm, normal, material, electrons, model, variance_left, counts, "
+          "radius and plain");
   if (extras.deposit_cells < 0 || extras.deposit_cells > most_deposit_cells)
     throw UsageError("`output.deposit`",
                      fmt::format("{} cells are out of range", extras.deposit_cells),
@@ -168,9 +169,10 @@ void check_extras_of(const ResolvedJob& job) {
   const bool guided = job.estimate.kind == Estimate::guided;
   for (const std::string& name : job.extras.channels)
     if (!guided && (name == "radius" || name == "plain"))
-      throw UsageError("`output.channels`",
-                       fmt::format("'{}' is of guided estimates, and the image is a plain one", name),
-                       "Add `simulation.estimate=guided`, or leave it out");
+      throw UsageError(
+          "`output.channels`",
+          fmt::format("'{}' is of guided estimates, and the image is a plain one", name),
+          "Add `simulation.estimate=guided`, or leave it out");
   if (wants_counts(job.extras) && !guided && mc::accuracy_of(job.options.budget) > 0)
     throw UsageError("`output.channels`",
                      "with an accuracy counts are of differences to planes, which tell nobody else "

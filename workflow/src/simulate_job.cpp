@@ -213,6 +213,7 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
   SimulateSummary summary;
   SpecimenFacts facts;
   std::optional<mc::Scene> ready;
+  double cascades_that_fit = 1e6;  // into memory; refined where libraries are of use
   const auto note = [&](std::vector<std::string> warnings) {
     for (std::string& warning : warnings) {
       if (warn) warn(warning);
@@ -253,8 +254,12 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
     note(warnings_of(job.scene.specimen, summary.simplification));
     mc::SimulationOptions expected = job.options;
     if (job.estimate.kind == Estimate::guided) {
-      expected = guided_options(job.options);
       expected.budget = expected_budget(job.options.budget);
+      const mc::MethodChoice few = mc::choose_method(*ready, expected);
+      if (few.library_bytes > 0)
+        cascades_that_fit = 0.9 * mc::MethodLimits{}.library_bytes *
+                            static_cast<double>(few.cascades) / few.library_bytes;
+      expected.least_cascades = guided_options(job.options, cascades_that_fit).least_cascades;
     }
     summary.choice =
         mc::choose_method(*ready, expected, job.scene.method, {job.extras.deposit_cells > 0});
@@ -275,18 +280,28 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
   if (team) of_team.emplace(*team, kept);
   mc::LibrarySource& libraries = team ? static_cast<mc::LibrarySource&>(*of_team) : kept;
   Simulation simulation;
-  const ProgressCallback progress =
-      reporter.counting(
+  const ProgressCallback progress = reporter.counting(
       mc::accuracy_of(job.options.budget) > 0 && !guided ? "pixels" : "primaries");
   std::optional<TeamScheduler> processes;
   if (team) processes.emplace(*team);
   mc::SimulationContext context{.watch = {progress, cancel},
                                 .libraries = &libraries,
                                 .scheduler = processes ? &*processes : nullptr};
-  if (job.seconds() > 0)
+  if (job.seconds() > 0 && guided) {
+    const std::int64_t electrons =
+        electrons_that_fit(scene, job.options, guides, cascades_that_fit, context, simulator,
+                           job.seconds() - seconds_since(record.start), team);
+    job.options.budget = mc::ElectronsPerPixel{electrons};
+    if (tell && leads(team))
+      tell(
+          fmt::format("{} electrons per pixel fit in {:g} s; `simulation.electrons={}` repeats "
+                      "this exactly",
+                      electrons, job.seconds(), electrons));
+  }
+  if (job.seconds() > 0 && !guided)
     simulation =
         simulate_coarsely(job, scene, kept, summary.choice, record, context, simulator, tell, team);
-  if (job.seconds() > 0 && !simulation.final) {  // as with a request for that accuracy
+  if (job.seconds() > 0 && !guided && !simulation.final) {  // as with a request for that accuracy
     summary.choice =
         mc::choose_method(scene, job.options, s.method, {job.extras.deposit_cells > 0});
     job.options.method = summary.choice.method;
@@ -311,8 +326,8 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
   };
   context.journal = checkpoint.get();
   if (guided) {
-    GuidedSimulation done =
-        simulate_guided(scene, job.options, guides, context, simulator, reporter, team);
+    GuidedSimulation done = simulate_guided(scene, job.options, guides, cascades_that_fit, context,
+                                            simulator, reporter, team);
     simulation.result = std::move(done.result);
     summary.guided = std::move(done.images);
     summary.rounds = done.rounds;

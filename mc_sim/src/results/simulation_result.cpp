@@ -65,9 +65,8 @@ void SimulationResult::release() const {
 std::size_t tally_bytes(const Scan& scan, const SimulationOptions& options) {
   return static_cast<std::size_t>(scan.width) * static_cast<std::size_t>(scan.height) *
          (sizeof(PixelTally) +
-          options.detectors.size() *
-              (sizeof(Counts) + (options.odd_counts ? sizeof(Counts) : 0) +
-               (accuracy_of(options.budget) > 0 ? sizeof(Control) : 0)));
+          options.detectors.size() * (sizeof(Counts) + (options.odd_counts ? sizeof(Counts) : 0) +
+                                      (accuracy_of(options.budget) > 0 ? sizeof(Control) : 0)));
 }
 
 UnitTally empty_tally(const WorkUnit& unit, const SimulationOptions& options) {

@@ -18,8 +18,7 @@ class FixedSampler final : public UnitWorker {
   FixedSampler(const Scene::Impl& scene, const SimulationOptions& options,
                const Arguments&... arguments)
       : detectors_(options.detectors.size()), odd_counts_(options.odd_counts),
-        primaries_per_pixel_(scene.scan, options),
-        source_(scene, options, arguments...) {}
+        primaries_per_pixel_(scene.scan, options), source_(scene, options, arguments...) {}
 
   void simulate(const WorkUnit& unit, Observer* observer, UnitTally& out) override {
     clear(out, unit, detectors_);

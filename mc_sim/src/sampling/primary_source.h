@@ -41,9 +41,9 @@ struct VisitNothing {
 ///   primary is simulated begin(task)                  looks at the pixels of a unit serve(ranges,
 ///   visit)         simulates the primaries of `ranges`, one range for each pixel, in an order of
 ///   its own:
-///                                visit(pixel, number, hit, counts), where counts(detector) gives the
-///                                electrons of the primary and those of its control (0 without).
-///                                Throws Interrupted
+///                                visit(pixel, number, hit, counts), where counts(detector) gives
+///                                the electrons of the primary and those of its control (0
+///                                without). Throws Interrupted
 ///   finish(tally)                adds balance and spectra of all primaries since `begin`
 ///   most_primaries()             of a pixel, where an accuracy is wanted
 ///   misses(pixel)                the beam meets nothing there

@@ -98,13 +98,16 @@ class ReplaySource {
     const std::uint64_t number = numbers_.number(x, y);
     RandomStream own(options_.seed, number, random_streams::order_of_cascades);
     const std::uint32_t a = own.bits(), b = own.bits();
-    pixels_.push_back({x,
-                       y,
-                       number,
-                       replay_.site(x, y, around),
-                       {},
-                       false,
-                       StratifiedPermutation(cascades_, a, b)});
+    pixels_.push_back(
+        {x,
+         y,
+         number,
+         replay_.site(x, y, around),
+         {},
+         false,
+         StratifiedPermutation(cascades_, a, b,
+                               options_.odd_counts ? StratifiedPermutation::short_run
+                                                   : StratifiedPermutation::long_run)});
     Pixel& p = pixels_.back();
     if (!controls_ || !p.site.hit || !options_.planar_control) return;
     p.plane = replay_.proved_plane(p.site);

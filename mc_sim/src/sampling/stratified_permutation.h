@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 
 #include "surf/mc/cascades/cascade_library.h"
@@ -15,19 +16,21 @@ namespace surf::mc {
 /// library block by block, so that the processor's cache holds what they replay.
 class StratifiedPermutation {
  public:
-  static constexpr std::uint64_t run = 32, block = 64;
-  static_assert(CascadeLibrary::page_cascades % block == 0 && block % run == 0);
+  static constexpr std::uint64_t block = 64, long_run = 32, short_run = 1;
+  static_assert(CascadeLibrary::page_cascades % block == 0);
 
-  /// `a` and `b` are random words; `cascades` a multiple of `block`.
-  StratifiedPermutation(std::uint64_t cascades, std::uint32_t a, std::uint32_t b)
-      : blocks_(cascades / block), first_(blocks_ > 0 ? a % blocks_ : 0), key_(b) {}
+  /// `a` and `b` are random words; `cascades` a multiple of `block`; `run` is a power of two that
+  /// divides it. Short runs cost time: each is a place of its own in memory. But pixels whose means
+  /// are compared or averaged should share few of them.
+  StratifiedPermutation(std::uint64_t cascades, std::uint32_t a, std::uint32_t b,
+                        std::uint64_t run = long_run)
+      : blocks_(cascades / block), first_(blocks_ > 0 ? a % blocks_ : 0), key_(b),
+        shift_(std::countr_zero(run)) {}
 
   /// The cascade of the pixel's primary `i`.
   std::size_t operator[](std::uint64_t i) const {
-    const std::uint64_t turn = i / run;
-    const std::uint64_t b = (first_ + turn) % blocks_;
-    const std::uint64_t place = (offset(b) + turn / blocks_) % runs;
-    return static_cast<std::size_t>(b * block + place * run + i % run);
+    const std::uint64_t turn = i >> shift_;
+    return cascade((first_ + turn) % blocks_, turn, i);
   }
 
   /// take(i, cascade) for each primary from `first` to before `end` whose cascade is of this block.
@@ -35,21 +38,25 @@ class StratifiedPermutation {
   void each_of_block(std::uint64_t b, std::uint64_t first, std::uint64_t end,
                      const Take& take) const {
     std::uint64_t turn = (b + blocks_ - first_) % blocks_;
-    const std::uint64_t begin = first / run;
+    const std::uint64_t begin = first >> shift_;
     if (turn < begin) turn += (begin - turn + blocks_ - 1) / blocks_ * blocks_;
-    for (; turn * run < end; turn += blocks_) {
-      const std::uint64_t place = (offset(b) + turn / blocks_) % runs;
-      for (std::uint64_t i = std::max(first, turn * run); i < std::min(end, (turn + 1) * run); ++i)
-        take(i, static_cast<std::size_t>(b * block + place * run + i % run));
-    }
+    for (; turn << shift_ < end; turn += blocks_)
+      for (std::uint64_t i = std::max(first, turn << shift_);
+           i < std::min(end, (turn + 1) << shift_); ++i)
+        take(i, cascade(b, turn, i));
   }
 
  private:
-  static constexpr std::uint64_t runs = block / run;
-
+  std::size_t cascade(std::uint64_t b, std::uint64_t turn, std::uint64_t i) const {
+    const std::uint64_t runs = block >> shift_;
+    const std::uint64_t place = (offset(b) + turn / blocks_) % runs;
+    return static_cast<std::size_t>(b * block + (place << shift_) +
+                                    (i & ((std::uint64_t{1} << shift_) - 1)));
+  }
   std::uint64_t offset(std::uint64_t b) const { return ((key_ + b) * 0x9e3779b97f4a7c15u) >> 40; }
 
   std::uint64_t blocks_, first_, key_;
+  int shift_;
 };
 
 }  // namespace surf::mc

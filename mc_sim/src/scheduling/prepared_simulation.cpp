@@ -26,8 +26,9 @@ std::size_t library_size(const SimulationOptions& options, std::int64_t most_pri
       if (error > 0) wanted = std::max(wanted, y.variance / (of_the_variance * error * error));
     }
   }
-  const double pages = std::ceil(
-      std::max({wanted, 1e4, static_cast<double>(options.least_cascades)}) / CascadeLibrary::page_cascades);
+  const double pages =
+      std::ceil(std::max({wanted, 1e4, static_cast<double>(options.least_cascades)}) /
+                CascadeLibrary::page_cascades);
   return static_cast<std::size_t>(pages) * CascadeLibrary::page_cascades;
 }
 

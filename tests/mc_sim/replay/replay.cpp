@@ -60,15 +60,15 @@ TEST(StratifiedPermutation, TakesNoCascadeTwiceBeforeAllWereTaken) {
 
 TEST(StratifiedPermutation, SpreadsPixelsEvenly) {
   // Over many pixels every run of cascades is taken equally often, and as the second run, too.
-  constexpr std::uint64_t cascades = 2048, runs = cascades / StratifiedPermutation::run;
+  constexpr std::uint64_t cascades = 2048, runs = cascades / StratifiedPermutation::long_run;
   std::vector<std::int64_t> first(runs), tenth(runs);
   constexpr int pixels = 20000;
   for (int p = 0; p < pixels; ++p) {
     RandomStream random(3, static_cast<std::uint64_t>(p), 0);
     const std::uint32_t a = random.bits(), b = random.bits();
     const StratifiedPermutation subset(cascades, a, b);
-    ++first[subset[0] / StratifiedPermutation::run];
-    ++tenth[subset[9 * StratifiedPermutation::run] / StratifiedPermutation::run];
+    ++first[subset[0] / StratifiedPermutation::long_run];
+    ++tenth[subset[9 * StratifiedPermutation::long_run] / StratifiedPermutation::long_run];
   }
   const std::vector<double> even(runs, double(pixels) / runs);
   test::expect_distributed(first, even, 2);

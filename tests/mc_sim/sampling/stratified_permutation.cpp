@@ -7,16 +7,22 @@
 #include <gtest/gtest.h>
 
 namespace surf::mc {
+namespace {
+
+constexpr std::uint64_t runs[] = {StratifiedPermutation::long_run, 4,
+                                  StratifiedPermutation::short_run};
 
 TEST(StratifiedPermutation, TakesEachCascadeOnceBeforeAnyTwice) {
   for (const std::uint64_t cascades : {64u, 128u, 1024u, 64u * 17u}) {
-    const StratifiedPermutation subset(cascades, 123456789, 987654321);
-    for (const std::uint64_t round : {0, 1, 2}) {
-      std::set<std::size_t> taken;
-      for (std::uint64_t i = round * cascades; i < (round + 1) * cascades; ++i)
-        taken.insert(subset[i]);
-      EXPECT_EQ(taken.size(), cascades);
-      EXPECT_EQ(*taken.rbegin(), cascades - 1);
+    for (const std::uint64_t run : runs) {
+      const StratifiedPermutation subset(cascades, 123456789, 987654321, run);
+      for (const std::uint64_t round : {0, 1, 2}) {
+        std::set<std::size_t> taken;
+        for (std::uint64_t i = round * cascades; i < (round + 1) * cascades; ++i)
+          taken.insert(subset[i]);
+        EXPECT_EQ(taken.size(), cascades) << run;
+        EXPECT_EQ(*taken.rbegin(), cascades - 1);
+      }
     }
   }
 }
@@ -31,17 +37,19 @@ TEST(StratifiedPermutation, GivesTheSamePrimariesBlockByBlock) {
       for (const Range r :
            {Range{0, 0}, Range{0, 1}, Range{0, 31}, Range{0, 400}, Range{17, 18}, Range{31, 33},
             Range{100, 1000}, Range{cascades, 3 * cascades + 5}, Range{1000001, 1003000}}) {
-        const StratifiedPermutation subset(cascades, a, 3 * a + 5);
-        std::set<std::uint64_t> served;
-        for (std::uint64_t b = 0; b < cascades / StratifiedPermutation::block; ++b)
-          subset.each_of_block(b, r.first, r.end, [&](std::uint64_t i, std::size_t cascade) {
-            EXPECT_TRUE(served.insert(i).second) << i << " is served twice";
-            EXPECT_EQ(cascade, subset[i]) << i << " of " << cascades;
-            EXPECT_EQ(cascade / StratifiedPermutation::block, b) << i;
-            EXPECT_TRUE(i >= r.first && i < r.end) << i << " of " << r.first << " to " << r.end;
-          });
-        EXPECT_EQ(served.size(), r.end - r.first)
-            << r.first << " to " << r.end << " of " << cascades;
+        for (const std::uint64_t run : runs) {
+          const StratifiedPermutation subset(cascades, a, 3 * a + 5, run);
+          std::set<std::uint64_t> served;
+          for (std::uint64_t b = 0; b < cascades / StratifiedPermutation::block; ++b)
+            subset.each_of_block(b, r.first, r.end, [&](std::uint64_t i, std::size_t cascade) {
+              EXPECT_TRUE(served.insert(i).second) << i << " is served twice";
+              EXPECT_EQ(cascade, subset[i]) << i << " of " << cascades;
+              EXPECT_EQ(cascade / StratifiedPermutation::block, b) << i;
+              EXPECT_TRUE(i >= r.first && i < r.end) << i << " of " << r.first << " to " << r.end;
+            });
+          EXPECT_EQ(served.size(), r.end - r.first)
+              << r.first << " to " << r.end << " of " << cascades << " in runs of " << run;
+        }
       }
 }
 
@@ -49,9 +57,10 @@ TEST(StratifiedPermutation, IsEachPixelsOwn) {
   const StratifiedPermutation one(64 * 100, 5, 7), other(64 * 100, 6, 7), third(64 * 100, 5, 8);
   EXPECT_NE(one[0], other[0]);
   int different = 0;
-  for (std::uint64_t i = 0; i < 6400; i += StratifiedPermutation::run)
+  for (std::uint64_t i = 0; i < 6400; i += StratifiedPermutation::long_run)
     different += one[i] != third[i];
   EXPECT_GT(different, 50);
 }
 
+}  // namespace
 }  // namespace surf::mc

@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double same_pixel = 1e-3;      // relative, as models demand
-constexpr double most_pixel_ratio = 4;   // beyond, a model says little about the pixels
+constexpr double same_pixel = 1e-3;     // relative, as models demand
+constexpr double most_pixel_ratio = 4;  // beyond, a model says little about the pixels
 
 GuideModel none(std::string reason) { return {nullptr, "none", std::move(reason)}; }
 
@@ -44,8 +44,7 @@ std::optional<GuideModel> find_stored(const mc::Scene& scene, const fs::path& fo
     if (entry.path().extension() == ".json") files.push_back(entry.path());
   std::ranges::sort(files);
   // Names begin with material and energy.
-  const std::string usual = kept_name(request),
-                    beginning = usual.substr(0, usual.find("ev-") + 3);
+  const std::string usual = kept_name(request), beginning = usual.substr(0, usual.find("ev-") + 3);
   std::optional<GuideModel> best;
   double nearest = std::log(most_pixel_ratio);
   for (const fs::path& file : files) {
@@ -86,8 +85,7 @@ GuideModel find_guide_model(const EstimateOptions& options, const mc::Scene& sce
     return loaded(file, io::read_model(file),
                   fmt::format("by the model {}", file.filename().string()));
   }
-  if (scene.materials().size() > 1)
-    return none("by shape alone: fast models are of one material");
+  if (scene.materials().size() > 1) return none("by shape alone: fast models are of one material");
   if (scene.beam().tilt_deg != 0 || scene.beam().working_distance_nm > 0)
     return none("by shape alone: fast models are of beams straight from above");
   if (cache.empty()) return none("by shape alone: there is no cache with fast models");
@@ -121,8 +119,8 @@ std::vector<Guide> predicted_guides(const GuideModel& guide, const SeenSurface& 
     return model_nm > 0 && std::abs(pixel_nm - model_nm) > same_pixel * model_nm;
   };
   const bool resample = other(field.pitch_x_nm) || other(field.pitch_y_nm);
-  if (resample &&
-      (model_nm > (width - 1) * field.pitch_x_nm / 3 || model_nm > (height - 1) * field.pitch_y_nm / 3))
+  if (resample && (model_nm > (width - 1) * field.pitch_x_nm / 3 ||
+                   model_nm > (height - 1) * field.pitch_y_nm / 3))
     return {};  // the scan is hardly a pixel of the model
   const HeightField seen = resample ? resampled(field, model_nm) : field;
   const ModelImages images = guide.model->predict(seen, {.threads = threads, .watch = watch});

@@ -44,9 +44,9 @@ std::vector<GuidedImage> estimate_images(const mc::SimulationResult& result,
         {.region = guides.region,
          .library_cascades = static_cast<double>(result.library_cascades),
          .threads = threads,
-         .watch = watch.part(static_cast<double>(d) / static_cast<double>(result.detectors.size()),
-                             static_cast<double>(d + 1) /
-                                 static_cast<double>(result.detectors.size()))}));
+         .watch = watch.part(
+             static_cast<double>(d) / static_cast<double>(result.detectors.size()),
+             static_cast<double>(d + 1) / static_cast<double>(result.detectors.size()))}));
   return images;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <exception>
@@ -17,15 +18,17 @@ namespace surf::workflow {
 namespace {
 
 constexpr std::int64_t most_pixels = std::int64_t{1} << 24;  // all planes are in memory together
-constexpr std::int64_t run = 32;         // electrons are added in runs of cascades
+constexpr std::int64_t cascade_run = 32;  // electrons are added in runs of cascades
 // Electrons of a pixel times the square of the error that they leave, in scenes of all kinds.
 constexpr double usual_guided_variance = 0.1;
 constexpr int most_rounds = 24;
-constexpr double most_growth = 4;        // of a pixel's electrons in a round
-constexpr double around_px = 5;          // of the neighbourhood that an accuracy is reached in
+constexpr double least_growth = 1.3;
+constexpr double most_growth = 4;  // of a pixel's electrons in a round
+constexpr double around_px = 5;    // of the neighbourhood that an accuracy is reached in
 constexpr double least_target = 1e-9;
+constexpr double share_of_time = 0.9;
 
-constexpr double reserve = 1.1;          // over what the estimate of the error asks for
+constexpr double reserve = 1.1;  // over what the estimate of the error asks for
 // Cascades for each electron of a pixel: a guided pixel is the mean of up to a hundred, and the
 // library's share of its variance is to be a fifth of that.
 constexpr double cascades_per_electron = 512;
@@ -57,9 +60,8 @@ Grid<double> error_over_target(const std::vector<GuidedImage>& images, const mc:
     Grid<double> square(image.mean.width(), image.mean.height(), 0.0), known = square;
     for (std::size_t i = 0; i < square.size(); ++i) {
       if (!(image.radius_px.data()[i] > 0)) continue;
-      const double target =
-          std::max(mc::accuracy_of(budget) * std::max(image.mean.data()[i], 0.0),
-                   std::max(mc::floor_of(budget), least_target));
+      const double target = std::max(mc::accuracy_of(budget) * std::max(image.mean.data()[i], 0.0),
+                                     std::max(mc::floor_of(budget), least_target));
       square.data()[i] = std::pow(image.error.data()[i] / target, 2);
       known.data()[i] = 1;
     }
@@ -78,8 +80,7 @@ struct NextRound {
   double worst = 0;  ///< error over target
 };
 
-NextRound next_round(const mc::SimulationResult& r, const Grid<double>& ratio,
-                     std::int64_t most) {
+NextRound next_round(const mc::SimulationResult& r, const Grid<double>& ratio, std::int64_t most) {
   NextRound next;
   next.end = Grid<std::int64_t>(r.pixels.width(), r.pixels.height());
   bool grows = false;
@@ -89,8 +90,10 @@ NextRound next_round(const mc::SimulationResult& r, const Grid<double>& ratio,
       next.worst = std::max(next.worst, ratio(x, y));
       std::int64_t end = n;
       if (ratio(x, y) > 1) {
-        const double growth = std::min(reserve * ratio(x, y) * ratio(x, y), most_growth);
-        end = static_cast<std::int64_t>(std::ceil(static_cast<double>(n) * growth / run)) * run;
+        const double growth =
+            std::clamp(reserve * ratio(x, y) * ratio(x, y), least_growth, most_growth);
+        end = static_cast<std::int64_t>(std::ceil(static_cast<double>(n) * growth / cascade_run)) *
+              cascade_run;
         end = std::max(n, std::min(end, most));
       }
       next.end(x, y) = end;
@@ -117,10 +120,10 @@ Grid<std::int64_t> unpacked(const std::string& bytes, int width, int height) {
 void check_guided(const mc::SimulationOptions& options, const mc::Scan& scan) {
   const double electrons = mc::mean_electrons_of(options.budget);
   if (!(mc::accuracy_of(options.budget) > 0) && electrons < fewest_guided_electrons)
-    throw UsageError("`simulation.estimate=guided`",
-                     fmt::format("{:g} electrons per pixel are too few to tell their scatter",
-                                 electrons),
-                     "Give 8 or more; 64 are often enough");
+    throw UsageError(
+        "`simulation.estimate=guided`",
+        fmt::format("{:g} electrons per pixel are too few to tell their scatter", electrons),
+        "Give 8 or more; 64 are often enough");
   if (std::int64_t{scan.width} * scan.height > most_pixels)
     throw UsageError("`simulation.estimate=guided`",
                      fmt::format("{} x {} pixels are more than the 16 million that it holds in "
@@ -137,25 +140,22 @@ mc::Budget expected_budget(const mc::Budget& budget) {
       static_cast<std::int64_t>(usual_guided_variance / (accuracy * accuracy)))};
 }
 
-mc::SimulationOptions guided_options(mc::SimulationOptions options) {
+mc::SimulationOptions guided_options(mc::SimulationOptions options, double cascades_that_fit) {
   double wanted = cascades_per_electron * mc::mean_electrons_of(options.budget);
   if (const double accuracy = mc::accuracy_of(options.budget); accuracy > 0) {
     wanted = cascades_of_accuracy / (accuracy * accuracy);
     options.budget = mc::ElectronsPerPixel{first_round_electrons};
   }
-  // A cascade takes some kilobytes.
-  constexpr double bytes_of_a_cascade = 4096;
-  options.least_cascades = static_cast<std::size_t>(
-      std::min(wanted, options.library_memory / bytes_of_a_cascade));
+  options.least_cascades = static_cast<std::size_t>(std::min(wanted, cascades_that_fit));
   options.odd_counts = true;
   return options;
 }
 
 GuidedSimulation simulate_guided(const mc::Scene& scene, const mc::SimulationOptions& asked,
-                                 const SceneGuides& guides, const mc::SimulationContext& given,
-                                 const Simulator& simulator, const Reporter& reporter,
-                                 Team* team) {
-  mc::SimulationOptions options = guided_options(asked);
+                                 const SceneGuides& guides, double cascades_that_fit,
+                                 const mc::SimulationContext& given, const Simulator& simulator,
+                                 const Reporter& reporter, Team* team) {
+  mc::SimulationOptions options = guided_options(asked, cascades_that_fit);
   mc::SimulationContext context = given;
   const int width = scene.scan().width, height = scene.scan().height;
   const bool in_rounds = mc::accuracy_of(asked.budget) > 0;
@@ -183,11 +183,13 @@ GuidedSimulation simulate_guided(const mc::Scene& scene, const mc::SimulationOpt
           const std::int64_t most = out.result.library_cascades > 0
                                         ? static_cast<std::int64_t>(out.result.library_cascades)
                                         : std::int64_t{1} << 31;
-          const NextRound next = next_round(out.result, error_over_target(out.images, asked.budget), most);
+          const NextRound next =
+              next_round(out.result, error_over_target(out.images, asked.budget), most);
           reporter.note(fmt::format(
               "round {}: {:.0f} electrons per pixel, the worst error is {:.2g} times {}",
               out.rounds,
-              static_cast<double>(out.result.balance.incident) / (static_cast<double>(width) * height),
+              static_cast<double>(out.result.balance.incident) /
+                  (static_cast<double>(width) * height),
               next.worst, format_share(mc::accuracy_of(asked.budget))));
           if (next.more) numbers = packed(next.end);
         }
@@ -201,14 +203,47 @@ GuidedSimulation simulate_guided(const mc::Scene& scene, const mc::SimulationOpt
     if (thrown) std::rethrow_exception(thrown);
     if (numbers.empty()) break;
     auto primaries = std::make_shared<mc::PrimaryNumbers>();
-    primaries->first = options.primaries
-                           ? options.primaries->end
-                           : Grid<std::int64_t>(width, height, first_round_electrons);
+    primaries->first = options.primaries ? options.primaries->end
+                                         : Grid<std::int64_t>(width, height, first_round_electrons);
     primaries->end = unpacked(numbers, width, height);
     options.primaries = std::move(primaries);
   }
   out.result.budget = asked.budget;
   return out;
+}
+
+std::int64_t electrons_that_fit(const mc::Scene& scene, const mc::SimulationOptions& asked,
+                                const SceneGuides& guides, double cascades_that_fit,
+                                const mc::SimulationContext& context, const Simulator& simulator,
+                                double seconds, Team* team) {
+  mc::SimulationOptions options = asked;
+  options.budget = mc::ElectronsPerPixel{first_round_electrons};
+  options = guided_options(std::move(options), cascades_that_fit);
+  const auto begin = std::chrono::steady_clock::now();
+  const auto passed = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  const mc::SimulationResult first = simulator(scene, options, context);
+  const double simulated = passed();
+  std::string found;
+  std::exception_ptr thrown;
+  if (leads(team)) try {
+      if (!first.complete) throw Interrupted();
+      estimate_images(first, guides, options.threads, {{}, context.watch.cancel});
+      const double estimating = passed() - simulated;
+      const double left = share_of_time * (seconds - passed()) - estimating;
+      const double per_electron = (first.seconds + first.library_seconds) / first_round_electrons;
+      const auto electrons = static_cast<std::int64_t>(std::max(0.0, left) / per_electron);
+      found = std::to_string(std::clamp<std::int64_t>(
+          electrons / cascade_run * cascade_run, first_round_electrons, std::int64_t{1} << 20));
+    } catch (...) {
+      if (!team) throw;
+      thrown = std::current_exception();
+    }
+  if (team) team->broadcast(found);
+  if (thrown) std::rethrow_exception(thrown);
+  if (found.empty()) throw Interrupted();  // the leader says why
+  return std::stoll(found);
 }
 
 void summarize_accuracy(const std::vector<GuidedImage>& images, const mc::Budget& budget,

@@ -23,7 +23,8 @@ void check_guided(const mc::SimulationOptions& options, const mc::Scan& scan);
 
 /// The options of guided simulations: counts in halves, and libraries whose own share of the error
 /// is small beside what is asked for.
-mc::SimulationOptions guided_options(mc::SimulationOptions options);
+/// `cascades_that_fit`: into memory.
+mc::SimulationOptions guided_options(mc::SimulationOptions options, double cascades_that_fit);
 
 /// What an accuracy is expected to take, as a number of electrons; other budgets as they are.
 mc::Budget expected_budget(const mc::Budget& budget);
@@ -38,8 +39,16 @@ struct GuidedSimulation {
 /// the estimated error is still too large, until it is not. All members of a team take part; the
 /// leader decides.
 GuidedSimulation simulate_guided(const mc::Scene& scene, const mc::SimulationOptions& options,
-                                 const SceneGuides& guides, const mc::SimulationContext& context,
-                                 const Simulator& simulator, const Reporter& reporter, Team* team);
+                                 const SceneGuides& guides, double cascades_that_fit,
+                                 const mc::SimulationContext& context, const Simulator& simulator,
+                                 const Reporter& reporter, Team* team);
+
+/// The number of electrons per pixel that fits into `seconds`, from a first round that is thrown
+/// away: at least that round's. The leader finds it for all members of a team.
+std::int64_t electrons_that_fit(const mc::Scene& scene, const mc::SimulationOptions& options,
+                                const SceneGuides& guides, double cascades_that_fit,
+                                const mc::SimulationContext& context, const Simulator& simulator,
+                                double seconds, Team* team);
 
 /// Fills in how well an accuracy was met.
 void summarize_accuracy(const std::vector<GuidedImage>& images, const mc::Budget& budget,

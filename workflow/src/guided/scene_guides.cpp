@@ -25,8 +25,7 @@ SeenSurface seen_surface(const Image& view, const mc::Beam& beam, Grid<int>& reg
     return view.find(name)->values;
   };
   const Grid<float>&z = channel("z_nm"), &nx = channel("normal.x"), &ny = channel("normal.y"),
-                    &nz = channel("normal.z"), &material = channel("material"),
-                    &valid = channel("valid");
+        &nz = channel("normal.z"), &material = channel("material"), &valid = channel("valid");
   const Vec3 along = direction(beam);
   const int width = z.width(), height = z.height();
   SeenSurface surface{view.pitch_x_nm,

@@ -15,7 +15,6 @@ constexpr double pilot_sigma_px = 1.5;
 constexpr double least_share = 1e-3;  // of the region's mean
 // Of the linear part: where the fitted parabola falls below, as it may at bright ends.
 constexpr double least_variance_share = 0.2;
-// The halves' differences know the noise better than this only where there are many pixels.
 constexpr double most_scale = 4;
 
 }  // namespace
@@ -67,7 +66,8 @@ std::vector<double> pilot_means(const RegionCounts& counts) {
   return sums;
 }
 
-CountVariance fit_count_variance(const RegionCounts& counts, const std::vector<double>& pilot) {
+CountVariance fit_count_variance(const RegionCounts& counts, const std::vector<double>& pilot,
+                                 double library_cascades) {
   CountVariance v;
   double pixels = 0, mean = 0, primaries = 0;
   for (std::size_t i = 0; i < pilot.size(); ++i)
@@ -108,7 +108,14 @@ CountVariance fit_count_variance(const RegionCounts& counts, const std::vector<d
     }
   }
   if (!(v.slope > 0)) v.slope = 1;
-  if (expected > 0) v.noise_scale = std::clamp(differences / expected, 1 / most_scale, most_scale);
+  if (expected > 0 && library_cascades > 0) {
+    // Where all pixels are alike there are no more different primaries than the library has, and
+    // their scatter is known as well as that of so many numbers.
+    const double seen = std::clamp(differences / expected, 1 / most_scale, most_scale),
+                 before = 2 / library_cascades, doubt = 2 / pixels;
+    v.noise_scale = (seen * before + doubt) / (before + doubt);
+    v.noise_scale_doubt = before * doubt / (before + doubt);
+  }
   return v;
 }
 

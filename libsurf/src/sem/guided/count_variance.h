@@ -36,7 +36,8 @@ RegionCounts region_counts(const CountImage& counts, const Grid<int>& region, in
 struct CountVariance {
   double slope = 1, square = 0;  ///< slope * m + square * m^2
   double least = 0;              ///< mean below which the variance stays as it is there
-  double noise_scale = 1;        ///< of means over what scatter says: cascades of a run are shared
+  double noise_scale = 1;  ///< of means over what scatter says: pixels share a library's cascades
+  double noise_scale_doubt = 0;  ///< variance of `noise_scale`
 
   /// Of a mean of `primaries` counts.
   double of_mean(double mean, double primaries) const {
@@ -48,6 +49,8 @@ struct CountVariance {
 /// Means over a few pixels, to weigh counts by and to fit variances against.
 std::vector<double> pilot_means(const RegionCounts& counts);
 
-CountVariance fit_count_variance(const RegionCounts& counts, const std::vector<double>& pilot);
+/// `library_cascades`: see GuidedOptions.
+CountVariance fit_count_variance(const RegionCounts& counts, const std::vector<double>& pilot,
+                                 double library_cascades);
 
 }  // namespace surf::guided

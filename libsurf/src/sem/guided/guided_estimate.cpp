@@ -166,8 +166,14 @@ struct ErrorModel {
   std::array<double, detail_classes> variance{};  ///< over that by the windows' weights
   std::array<double, detail_classes> bias{};      ///< squared, over the spread
 
+  std::array<double, detail_classes> level{1, 1, 1};  ///< of both, by Stein's risk of the class
+
   double variance_scale(double detail) const { return of(variance, detail); }
-  double bias_scale(double detail) const { return of(bias, detail); }
+  /// The squared error of a pixel's estimate from this variance by the windows' weights.
+  double expected(double variance_by_weights, double spread, double detail) const {
+    return of(level, detail) *
+           (of(variance, detail) * variance_by_weights + of(bias, detail) * spread);
+  }
 
  private:
   static double of(const std::array<double, detail_classes>& scales, double detail) {
@@ -209,6 +215,32 @@ double fit_bias(const GuidedRegion& r, const GuidedPlanes& planes, const ErrorMo
   return std::max(0.0, (product + before * expected) / (square + before));
 }
 
+/// What is expected of a squared error, and what is seen around the pixel, weighed by how well each
+/// is known: the first within about itself, the second with a variance of `doubt`.
+double combine(double expected, double seen, double doubt) {
+  const double prior = expected * expected;
+  if (!(prior > 0)) return expected;
+  return std::max(expected + prior / (prior + doubt) * (seen - expected), 0.5 * expected);
+}
+
+/// What Stein's risk says of a class as a whole, over what is expected of it.
+double level_of(const GuidedRegion& r, const GuidedPlanes& planes, const ErrorModel& model,
+                int detail_class) {
+  double seen = 0, expected = 0, doubt = 0, noise = 0;
+  for (std::size_t i = 0; i < r.counts.seen.size(); ++i) {
+    if (!r.counts.counts(i)) continue;
+    const double w = share_of_class(detail_class, r.detail[i]) * r.weight[i];
+    if (w == 0) continue;
+    const PixelErrors e = errors_of(r, planes, i);
+    seen += w * (e.risk - model.variance_scale(r.detail[i]) * e.variance);
+    expected += w * model.expected(e.variance, planes.spread[i], r.detail[i]);
+    doubt += std::pow(w * e.half_noise, 2);
+    noise += w * e.half_noise;
+  }
+  doubt += r.variance.noise_scale_doubt * noise * noise;
+  return expected > 0 ? combine(1, seen / expected, doubt / (expected * expected)) : 1;
+}
+
 ErrorModel fit_errors(const GuidedRegion& r, const GuidedPlanes& planes) {
   ErrorModel model;
   std::array<double, detail_classes> by_difference{}, by_weights{};
@@ -227,15 +259,10 @@ ErrorModel fit_errors(const GuidedRegion& r, const GuidedPlanes& planes) {
                                                        1 / most_variance_scale, most_variance_scale)
                                           : 1;
   for (int c = 0; c < detail_classes; ++c) model.bias[c] = fit_bias(r, planes, model, c);
+  std::array<double, detail_classes> level;
+  for (int c = 0; c < detail_classes; ++c) level[c] = level_of(r, planes, model, c);
+  model.level = level;
   return model;
-}
-
-/// What is expected of a squared error, and what is seen around the pixel, weighed by how well each
-/// is known: the first within about itself, the second with a variance of `doubt`.
-double combine(double expected, double seen, double doubt) {
-  const double prior = expected * expected;
-  if (!(prior > 0)) return expected;
-  return std::max(expected + prior / (prior + doubt) * (seen - expected), 0.5 * expected);
 }
 
 /// What is seen of squared errors around each pixel, relative to yields squared.
@@ -248,15 +275,17 @@ ErrorsAround errors_around(const GuidedRegion& r, const GuidedPlanes& planes,
                            const ErrorModel& model) {
   const GaussianWindow window(risk_sigma_px);
   const std::size_t pixels = r.counts.seen.size();
-  std::vector<double> seen(pixels, 0.0), expected = seen, doubt = seen, scratch;
+  std::vector<double> seen(pixels, 0.0), expected = seen, doubt = seen, noise = seen, scratch;
   for (std::size_t i = 0; i < pixels; ++i) {
     if (!r.counts.counts(i)) continue;
     const PixelErrors e = errors_of(r, planes, i);
     const double variance = model.variance_scale(r.detail[i]) * e.variance;
     seen[i] = r.weight[i] * (e.risk - variance);
-    expected[i] = r.weight[i] * (variance + model.bias_scale(r.detail[i]) * planes.spread[i]);
-    doubt[i] = std::pow(r.weight[i] * e.half_noise, 2);
+    expected[i] = r.weight[i] * model.expected(e.variance, planes.spread[i], r.detail[i]);
+    noise[i] = r.weight[i] * e.half_noise;
+    doubt[i] = noise[i] * noise[i];
   }
+  window.sum(noise, r.counts.width, r.counts.height, scratch);
   window.sum(seen, r.counts.width, r.counts.height, scratch);
   window.sum(expected, r.counts.width, r.counts.height, scratch);
   // Weights squared are a window narrower by the root of two.
@@ -267,7 +296,8 @@ ErrorsAround errors_around(const GuidedRegion& r, const GuidedPlanes& planes,
   for (std::size_t i = 0; i < pixels; ++i) {
     if (!(expected[i] > 0)) continue;
     around.ratio[i] = seen[i] / expected[i];
-    around.doubt[i] = narrower * doubt[i] / (expected[i] * expected[i]);
+    around.doubt[i] = (narrower * doubt[i] + r.variance.noise_scale_doubt * noise[i] * noise[i]) /
+                      (expected[i] * expected[i]);
   }
   return around;
 }
@@ -282,8 +312,8 @@ void put(const GuidedRegion& r, const GuidedPlanes& planes, double library_casca
     double value = e.value;
     const double noise = r.variance.of_mean(value, r.counts.primaries(i)),
                  variance = model.variance_scale(r.detail[i]) * e.variance;
-    const double expected = variance + model.bias_scale(r.detail[i]) * planes.spread[i];
-    double square = expected * combine(1, around.ratio[i], around.doubt[i]);
+    double square = model.expected(e.variance, planes.spread[i], r.detail[i]) *
+                    combine(1, around.ratio[i], around.doubt[i]);
     const double away = r.counts.mean(i) - value,
                  beyond = std::abs(away) - most_deviations * std::sqrt(noise);
     if (beyond > 0) {
@@ -302,8 +332,7 @@ void put(const GuidedRegion& r, const GuidedPlanes& planes, double library_casca
 
 }  // namespace
 
-Grid<double> mean_around(const Grid<double>& values, const Grid<double>& weights,
-                         double sigma_px) {
+Grid<double> mean_around(const Grid<double>& values, const Grid<double>& weights, double sigma_px) {
   const GaussianWindow window(sigma_px);
   std::vector<double> sums(values.size()), seen = weights.data(), scratch;
   for (std::size_t i = 0; i < sums.size(); ++i) sums[i] = values.data()[i] * seen[i];
@@ -333,7 +362,7 @@ GuidedImage estimate_guided(const CountImage& counts, const std::vector<Guide>& 
     GuidedRegion r;
     r.counts = region_counts(counts, options.region, number);
     const std::vector<double> pilot = pilot_means(r.counts);
-    r.variance = fit_count_variance(r.counts, pilot);
+    r.variance = fit_count_variance(r.counts, pilot, options.library_cascades);
     double here = 0;
     for (std::size_t h = 0; h < 2; ++h) {
       r.noise[h].assign(pilot.size(), 0.0);

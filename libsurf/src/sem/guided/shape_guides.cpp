@@ -58,8 +58,8 @@ Guide relative_height(const SeenSurface& s, double nm, double pixels) {
   Guide guide{"height", Grid<double>(s.seen.width(), s.seen.height(), 0.0)};
   for (std::size_t i = 0; i < seen.size(); ++i)
     if (s.seen.data()[i])
-      guide.values.data()[i] = std::tanh((s.height_nm.data()[i] - heights[i] / seen[i]) /
-                                         distance_nm);
+      guide.values.data()[i] =
+          std::tanh((s.height_nm.data()[i] - heights[i] / seen[i]) / distance_nm);
   return guide;
 }
 
@@ -102,8 +102,10 @@ Grid<double> distances(const Grid<std::uint8_t>& mask) {
     if (mask.data()[i]) far.data()[i] = 0;
   const auto pass = [&](int x, int y, int sign) {
     double& here = far(x, y);
-    for (const auto& [dx, dy, length] : {std::tuple{-1, 0, 1.0}, {0, -1, 1.0},
-                                         {-1, -1, std::numbers::sqrt2}, {1, -1, std::numbers::sqrt2}}) {
+    for (const auto& [dx, dy, length] : {std::tuple{-1, 0, 1.0},
+                                         {0, -1, 1.0},
+                                         {-1, -1, std::numbers::sqrt2},
+                                         {1, -1, std::numbers::sqrt2}}) {
       const int u = x + sign * dx, v = y + sign * dy;
       if (u >= 0 && v >= 0 && u < width && v < height) here = std::min(here, far(u, v) + length);
     }

@@ -15,8 +15,8 @@ namespace surf::workflow {
 /// Makes guided images of an image that `semsurf simulate --channels counts,electrons` wrote. Its
 /// channels z_nm, normal and material guide where they are there, and so does any other channel.
 struct EstimateJob {
-  std::filesystem::path input;  ///< may be empty where `image` is given
-  Image image;                  ///< used where `input` is empty
+  std::filesystem::path input;      ///< may be empty where `image` is given
+  Image image;                      ///< used where `input` is empty
   std::vector<std::string> guides;  ///< more channels that guide
   std::filesystem::path model;      ///< a fast model whose prediction guides; may be empty
   int threads = 0;
@@ -31,7 +31,7 @@ struct EstimateSummary {
   /// The image with its channels NAME and NAME.stderr estimated anew, and NAME.radius.
   Image image;
   std::vector<std::string> detectors;
-  std::vector<GuidedGain> gains;  ///< per detector
+  std::vector<GuidedGain> gains;    ///< per detector
   std::vector<std::string> guides;  ///< names of what guided
 };
 

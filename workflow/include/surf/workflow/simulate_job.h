@@ -39,10 +39,10 @@ mc::Scan resolve_scan(const mc::ScanRequest& request, const Box& specimen_extent
 struct Extras {
   /// Channels besides those of the detectors. What the beam sees: "z_nm", "normal" (three
   /// channels), "material". How each pixel was simulated: "electrons" (primaries whose counts were
-  /// kept), "model" (the number of the mc::PixelModel), "variance_left" (one channel per detector). Of guided
-  /// images: "radius" (in pixels, of the disc whose mean would be as noisy), "plain" (mean and
-  /// standard error without guides). "counts": sums and sums of squares of the primaries' numbers,
-  /// of all and of those of odd number, from which `semsurf estimate` makes guided images.
+  /// kept), "model" (the number of the mc::PixelModel), "variance_left" (one channel per detector).
+  /// Of guided images: "radius" (in pixels, of the disc whose mean would be as noisy), "plain"
+  /// (mean and standard error without guides). "counts": sums and sums of squares of the primaries'
+  /// numbers, of all and of those of odd number, from which `semsurf estimate` makes guided images.
   std::vector<std::string> channels;
   /// Deposited energy on a grid, with this many cells along its longest side.
   int deposit_cells = 0;
@@ -99,12 +99,12 @@ struct GuidedGain {
 
 struct SimulateSummary {
   mc::SimulationResult result;
-  mc::ResultSummary statistics;      ///< statistics of the result
+  mc::ResultSummary statistics;  ///< statistics of the result
   /// Estimates per detector, with `Estimate::guided`; before the detector's efficiency.
   std::vector<GuidedImage> guided;
-  std::vector<GuidedGain> gains;  ///< per detector, with `Estimate::guided`
-  std::string guided_by;          ///< what guided them, for people
-  int rounds = 1;         ///< of adding electrons
+  std::vector<GuidedGain> gains;     ///< per detector, with `Estimate::guided`
+  std::string guided_by;             ///< what guided them, for people
+  int rounds = 1;                    ///< of adding electrons
   std::optional<Charging> charging;  ///< of insulating materials
   /// With a wanted accuracy: whether the tier of physics is good enough for it.
   std::optional<std::string> tier;

@@ -39,7 +39,9 @@ struct SimulationOptions : Execution {
   /// The primaries to simulate, in place of a budget of electrons per pixel: what is added to an
   /// image in a further round. Null: those of the budget.
   std::shared_ptr<const PrimaryNumbers> primaries;
-  bool odd_counts = false;  ///< also count primaries of odd number apart; not with an accuracy
+  /// Also count primaries of odd number apart, for estimates from neighbours; not with an accuracy.
+  /// Pixels then share single cascades of a library and no runs of them.
+  bool odd_counts = false;
   Method method = Method::direct;
   bool planar_control = true;  ///< with an accuracy: average the difference to a plane's outcome
   std::uint64_t seed = 1;

@@ -20,7 +20,7 @@ struct WorkUnit {
 };
 
 struct UnitTally {
-  Grid<PixelTally> pixels;              ///< of the unit's rectangle
+  Grid<PixelTally> pixels;               ///< of the unit's rectangle
   std::vector<Grid<Counts>> counts;      ///< per detector
   std::vector<Grid<Counts>> odd_counts;  ///< per detector, of odd primaries, where asked for
   std::vector<Grid<Control>> controls;   ///< per detector, with `accuracy`
