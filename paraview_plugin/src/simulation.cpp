@@ -20,6 +20,7 @@
 #include "surf/core/parallel.h"
 #include "surf/mc/results/serialize.h"
 #include "surf/mc/scheduling/unit_plan.h"
+#include "surf/workflow/guided_view.h"
 
 namespace surf::pv {
 namespace {
@@ -242,7 +243,11 @@ struct LiveSimulation::Shared {
     thread = std::thread([this] { run(); });
   }
 
+  using ShowUnit = std::function<void(const mc::WorkUnit&, const mc::UnitTally&)>;
+
   void run();
+  mc::SimulationResult simulate_guided(const mc::Scene& scene, const mc::SimulationOptions& options,
+                                       const mc::SimulationContext& context, const ShowUnit& show);
   void look_coarsely(const mc::Scene& scene);
   void tell() {
     news = true;
@@ -250,12 +255,14 @@ struct LiveSimulation::Shared {
   }
 
   static constexpr int coarse_electrons = 8;
+  static constexpr std::int64_t first_guided = 16;
   static constexpr int coarsest = 8;  // places along the longer side, doubled again and again
   static constexpr std::chrono::milliseconds coarse_time{600};
 
   workflow::SimulateJob job;
   mc::Scan scan;
   mc::SimulationOptions coarse_options;
+  std::unique_ptr<workflow::GuidedView> view;  // of the thread that simulates
   CancelToken cancel;
 
   // Guarded by `mutex`.
@@ -267,6 +274,7 @@ struct LiveSimulation::Shared {
   std::vector<std::string> warnings;  // nobody has seen yet
   Record record;
   std::exception_ptr error;
+  std::optional<Image> guided;  // of the round before
   bool coarse_done = false, has_fine = false, news = false, ended = false, looked_at = false;
 
   std::thread thread;  // last: it uses the others
@@ -326,6 +334,44 @@ void LiveSimulation::Shared::look_coarsely(const mc::Scene& scene) {
   }
 }
 
+/// The first electrons in rounds, each twice as many; after each the guided image is what is shown.
+mc::SimulationResult LiveSimulation::Shared::simulate_guided(const mc::Scene& scene,
+                                                             const mc::SimulationOptions& options,
+                                                             const mc::SimulationContext& context,
+                                                             const ShowUnit& show) {
+  const Watch watch{{}, &cancel};
+  if (!view) {
+    view = std::make_unique<workflow::GuidedView>(scene, job.estimate, job.cache, options.threads,
+                                                  watch);
+    const std::lock_guard lock(mutex);
+    fine = mc::empty_result(scan, options);
+  }
+  const std::int64_t all = mc::electrons_of(options.budget);
+  std::optional<mc::SimulationResult> result;
+  for (std::int64_t first = 0, end = first_guided; !result || first < all;
+       first = end, end = std::min(2 * end, all)) {
+    mc::SimulationOptions round = options;
+    if (options.primaries) end = all;  // a round that adds to those before
+    else
+      round.primaries = std::make_shared<mc::PrimaryNumbers>(
+          mc::PrimaryNumbers{Grid<std::int64_t>(scan.width, scan.height, first),
+                             Grid<std::int64_t>(scan.width, scan.height, std::min(end, all))});
+    Shown shown(scan, round, show);
+    mc::SimulationContext own = context;
+    own.journal = &shown;
+    mc::SimulationResult added = mc::simulate(scene, round, own);
+    fine.library_cascades = added.library_cascades;
+    if (result) mc::add_round(*result, added);
+    else result = std::move(added);
+    if (!result->complete) break;
+    Image image = view->image(fine, watch);  // nobody else changes it
+    const std::lock_guard lock(mutex);
+    guided = std::move(image);
+    tell();
+  }
+  return *std::move(result);
+}
+
 void LiveSimulation::Shared::run() {
   try {
     workflow::Reporter reporter;
@@ -343,18 +389,22 @@ void LiveSimulation::Shared::run() {
         tell();
       }
       if (cancel.cancelled()) throw Interrupted();
-      Shown shown(scan, options, [this](const mc::WorkUnit& unit, const mc::UnitTally& tally) {
+      const auto show = [this](const mc::WorkUnit& unit, const mc::UnitTally& tally) {
         const std::lock_guard lock(mutex);
         mc::merge(fine, unit, tally);
         has_fine = true;
         tell();
-      });
+      };
+      if (job.estimate.kind == workflow::Estimate::guided)
+        return simulate_guided(scene, options, context, show);
+      Shown shown(scan, options, show);
       mc::SimulationContext own = context;
       own.journal = &shown;
       return mc::simulate(scene, options, own);
     };
     workflow::SimulateSummary summary = workflow::run(job, reporter, nullptr, watched);
     const std::lock_guard lock(mutex);
+    if (!summary.guided.empty()) guided = workflow::image_of(summary);
     fine = std::move(summary.result);
     tracks = std::move(summary.tracks);
     record = std::move(summary.record);
@@ -410,7 +460,7 @@ LiveSimulation::View LiveSimulation::look() {
   view.record = shared_->ended
                     ? shared_->record
                     : record_of(static_cast<const mc::SimulationRequest&>(shared_->job.scene));
-  view.image = mc::make_image(shared_->fine, scan);
+  view.image = shared_->guided ? *shared_->guided : mc::make_image(shared_->fine, scan);
   view.state = shared_->ended ? "done" : shared_->has_fine ? "refining" : "coarse";
   // A copy: the tallies go on growing.
   view.result = mc::empty_result(scan, shared_->coarse_options);
@@ -426,7 +476,7 @@ LiveSimulation::View LiveSimulation::look() {
   }
   view.result.library_cascades = r.library_cascades;
   view.result.cascade_yields = r.cascade_yields;
-  if (shared_->ended) return view;
+  if (shared_->ended || shared_->guided) return view;
   const Image coarse = mc::make_image(shared_->coarse, scan);
   for (int y = 0; y < scan.height; ++y)
     for (int x = 0; x < scan.width; ++x) {

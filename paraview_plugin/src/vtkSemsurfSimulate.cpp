@@ -91,6 +91,7 @@ workflow::SimulateJob job_of(pv::PropertyValues values, int budget) {
   job.checkpoint.wanted = false;
   values.apply(static_cast<mc::SimulationRequest&>(job.scene));
   values.apply(job.extras);
+  values.apply(job.estimate);
   return job;
 }
 
@@ -210,6 +211,11 @@ int vtkSemsurfSimulate::RequestData(vtkInformation*, vtkInformationVector** inpu
           output->Has(Pipeline::UPDATE_NUMBER_OF_PIECES()) &&
           output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) == ranks->GetNumberOfProcesses();
       if (!spread) ranks = nullptr;
+      if (ranks && k.job.estimate.kind == workflow::Estimate::guided &&
+          mc::accuracy_of(k.job.scene.budget) > 0)
+        throw UsageError("`simulation.accuracy`",
+                         "guided images reach it in rounds, which ParaView's ranks do not share",
+                         "Give a number of electrons");
       Image image;
       std::vector<Track> tracks;
       vtkNew<vtkTable> table;
@@ -235,7 +241,7 @@ int vtkSemsurfSimulate::RequestData(vtkInformation*, vtkInformationVector** inpu
       } else {
         k.live.reset();
         workflow::SimulateSummary done = pv::simulate(this, k.job, ranks);
-        image = mc::make_image(done.result, k.scan);
+        image = workflow::image_of(done);
         tracks = std::move(done.tracks);
         texts = std::move(done.record);
         texts["state"] = "done";

@@ -35,6 +35,7 @@
 #include "surf/workflow/calibrate_job.h"
 #include "surf/workflow/certainty_job.h"
 #include "surf/workflow/clean_job.h"
+#include "surf/workflow/estimate_job.h"
 #include "surf/workflow/level_job.h"
 #include "surf/workflow/morphology_job.h"
 #include "surf/workflow/noise_job.h"
@@ -85,6 +86,8 @@ const std::map<std::string, std::function<std::vector<Described>()>>& structs() 
       {"material", described<io::MaterialChoice>},
       {"train", described<workflow::TrainJob>},
       {"predict", described<workflow::PredictJob>},
+      {"estimate", described<workflow::EstimateJob>},
+      {"estimate_options", described<workflow::EstimateOptions>},
       {"register", described<workflow::RegisterJob>},
       {"reconstruct", described_reconstruction},
       {"calibrate", described<workflow::CalibrateParameters>},

@@ -5,9 +5,9 @@ import time
 from support import array, expect, quiet, run, same, simple, text
 
 
-def live_goes_on_by_being_asked():
+def live_goes_on_by_being_asked(**estimate):
     heights = simple.SampleSurface(Width=80, Depth=60, Pitch=4)
-    settings = dict(Input=heights, Pixels=24, Electrons=60, Method="Direct")
+    settings = dict(Input=heights, Pixels=24, Electrons=60, Method="Direct", **estimate)
     live = simple.SimulateSEM(Live=1, **settings)
     states, end = [text(quiet(live), "state")], time.monotonic() + 60
     while states[-1] != "done" and time.monotonic() < end:
@@ -23,4 +23,8 @@ def live_goes_on_by_being_asked():
     same(array(quiet(live), "SE"), array(quiet(simple.SimulateSEM(**settings)), "SE"), "Live in the end and at once")
 
 
-run(live_goes_on_by_being_asked)
+def guided_too():
+    live_goes_on_by_being_asked(Estimate="Guided")
+
+
+run(live_goes_on_by_being_asked, guided_too)
