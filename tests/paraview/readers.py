@@ -57,6 +57,18 @@ def sem_images_have_their_place():
     refuses(simple.SEMImageReader(FileName=str(FOLDER / "sem.tif"), Channel="nothing"), "nothing")
 
 
+def images_with_counts_are_estimated():
+    semsurf("simulate", SOURCE / "samples" / "flat.toml", "--size", "24x20", "--electrons", 32, "--channels",
+            "counts,electrons,z_nm,normal,material", "-o", "counts.exr", "-o", "counts.vti", "-q")
+    semsurf("estimate", "counts.exr", "-o", "estimated.vti", "-q")
+    counts, want = [simple.XMLImageDataReader(FileName=[str(FOLDER / name)]) for name in ("counts.vti", "estimated.vti")]
+    there = fetch(simple.EstimateSEM(Input=counts))
+    for name in ("SE", "SE.stderr", "SE.radius"):
+        same(array(there, name), array(fetch(want), name), name)
+    refuses(simple.EstimateSEM(Input=simple.SampleSurface(Shape="Rough", Width=60, Depth=60, Pitch=3, CorrelationLength=9)),
+            "no counts")
+
+
 def units_and_parts_are_read():
     (FOLDER / "one.off").write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 2 0\n3 0 1 2\n")
     data = fetch(simple.SurfaceMeshReader(FileName=str(FOLDER / "one.off"), Unit=1000))
@@ -122,6 +134,6 @@ def real_scans_are_the_commands():
         same(array(data, data.GetPointData().GetScalars().GetName()), matrix(FOLDER / "real.txt"), path.name)
 
 
-run(the_letter_stands_upright, scans_are_in_nm, holes_are_marked, sem_images_have_their_place, units_and_parts_are_read,
+run(the_letter_stands_upright, scans_are_in_nm, holes_are_marked, sem_images_have_their_place, images_with_counts_are_estimated, units_and_parts_are_read,
     wrong_files_are_refused,
     a_stated_unit_is_overridden_on_request_only, a_file_that_changes_is_read_again, channels_can_be_chosen, real_scans_are_the_commands)

@@ -13,8 +13,7 @@ SIMULATE = {
     "Pixels": (6, {"scan.width": "6", "scan.height": "6"}), "PixelSize": (25, {"scan.pixel_x_nm": "25", "scan.pixel_y_nm": "25"}),
     "Region": ([-20, -20, 20, 20], {"scan.pixel_x_nm": "5"}),
     "Electrons": (4, {"simulation.electrons": "4"}), "Seed": (9, {"simulation.seed": "9"}),
-    "Method": ("Replay", {"simulation.method": "replay"}),
-    "Estimate": ("Guided", {"simulation.estimate": "guided"}), "Cutoff": (20, {"simulation.cutoff_ev": "20"}),
+    "Method": ("Replay", {"simulation.method": "replay"}), "Cutoff": (20, {"simulation.cutoff_ev": "20"}),
     "MeshTolerance": (0.5, {"simulation.mesh_tolerance_nm": "0.5"}),
     "Physics": ("secondaries=off", {"simulation.physics": "inelastic=monsel,elastic=mott,atoms=free,loss=joy-luo,secondaries=off,barrier=quantum"}),
     "Detectors": ("SE1", {"detector.3": "SE1:energy=0eV..50eV,cone=0deg..180deg,axis=beam,sector=0deg..360deg,side=any,"
@@ -26,6 +25,7 @@ SIMULATE = {
 TOGETHER = {
     "Accuracy": ({"Budget": "Accuracy", "Accuracy": 0.5}, {"simulation.accuracy": "0.5"}),
     "AccuracyFloor": ({"Budget": "Accuracy", "Accuracy": 0.5, "AccuracyFloor": 0.25}, {"simulation.accuracy_floor": "0.25"}),
+    "Estimate": ({"Estimate": "Guided", "Electrons": 16}, {"simulation.estimate": "guided"}),
     "GuideModel": ({"Estimate": "Guided", "Electrons": 16, "GuideModel": "off"}, {"simulation.guide_model": "off"}),
     "SubstrateTop": ({"Substrate": "Si", "SubstrateTop": -60}, {"specimen.substrate": "Si, top at -60 nm"}),
 }

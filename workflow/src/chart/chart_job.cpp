@@ -297,6 +297,7 @@ const std::vector<ChartFamily>& chart_families() {
         {"default", "what 'semsurf simulate' does with the scene, nothing else being said", true},
         {"direct", "each electron followed, the same number for each pixel", true},
         {"replay", "stored cascades retraced, the same number for each pixel", true},
+        {"guided", "few electrons, estimated with neighbours, guided by shape", true},
         {"accuracy", "replay, as many electrons as each pixel needs, with planes as controls",
          true},
         {"accuracy-without-planes", "the same without planes", true},

@@ -43,6 +43,7 @@ Look look_of(const std::string& family) {
   if (family == "direct") return {"direct", 0, line_points, false};
   if (family == "direct-accuracy") return {"direct, to an accuracy", 0, line_points, true};
   if (family == "replay") return {"replay", 1, line_points, false};
+  if (family == "guided") return {"guided", 6, line_points, false};
   if (family == "accuracy-without-planes") return {"replay, to an accuracy", 1, line_points, true};
   if (family == "accuracy") return {"replay with planes, to an accuracy", 3, line_points, true};
   if (family == "mesh-tolerance") return {"the same without fine detail", 2, points, false};

@@ -6,6 +6,9 @@
 #include <vector>
 
 #include "chart_methods.h"
+#include "guided/guided_images.h"
+#include "guided/guided_simulation.h"
+#include "guided/scene_guides.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/mc/cascades/cascade_library.h"
@@ -25,6 +28,7 @@ constexpr double direct_share = 1.0 / 20;
 // Shorter simulations are repeated, because a single measurement is inaccurate.
 constexpr double short_s = 0.5;
 constexpr int repeats = 3;
+constexpr double cascades_of_charts = 1e5;  // of guided images, at most
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -33,6 +37,7 @@ double seconds_since(Clock::time_point start) {
 struct Simulation {
   mc::SimulationOptions options;
   double tolerance_nm = 0;
+  bool guided = false;  // by shape alone
 };
 
 double median(std::vector<double> values) {
@@ -55,13 +60,28 @@ void simulate(const Simulation& what, const ChartSetting& setting, const Watch& 
     const double building_s = seconds_since(start);
     const mc::SimulationResult r = mc::simulate(ready, what.options, {.watch = watch});
     if (!r.complete) throw Interrupted();
-    run_s.push_back(r.seconds);
+    std::vector<GuidedImage> guided;
+    const auto estimating = Clock::now();
+    if (what.guided)
+      guided =
+          estimate_images(r,
+                          guides_of(ready, find_guide_model({Estimate::guided, "off"}, ready, {}),
+                                    what.options.threads, watch),
+                          what.options.threads, watch);
+    run_s.push_back(r.seconds + (what.guided ? seconds_since(estimating) : 0));
     preparation_s.push_back(building_s + r.library_seconds);
     if (i == 0) {
       point.primaries = r.balance.incident;
-      const auto value = [&](std::size_t d, int x, int y) { return r.yield(d, x, y).mean; };
+      const auto is_guided = [&](std::size_t d, int x, int y) {
+        return d < guided.size() && guided[d].radius_px(x, y) > 0;
+      };
+      const auto value = [&](std::size_t d, int x, int y) {
+        return is_guided(d, x, y) ? guided[d].mean(x, y) * r.detectors[d].efficiency
+                                  : r.yield(d, x, y).mean;
+      };
       const auto error = [&](std::size_t d, int x, int y) {
-        return r.yield(d, x, y).standard_error;
+        return is_guided(d, x, y) ? guided[d].error(x, y) * r.detectors[d].efficiency
+                                  : r.yield(d, x, y).standard_error;
       };
       judge(*setting.reference, take_compared(*setting.reference, value, &error),
             setting.accuracies, point);
@@ -93,6 +113,18 @@ class List {
     what.options.method = method;
     what.options.budget = mc::ElectronsPerPixel{n};
     add(family, fmt::format("{}-{}", family, n), text, what);
+  }
+
+  void guided(mc::Method method, std::int64_t n) {
+    const double most =
+        setting_.job.most_primaries * (method == mc::Method::direct ? direct_share : 1);
+    const std::string text = fmt::format("{} electrons per pixel, guided by shape", n);
+    if (static_cast<double>(n) * pixels_ > most) return too_long("guided", text);
+    Simulation what{options_, 0, true};
+    what.options.method = method;
+    what.options.budget = mc::ElectronsPerPixel{n};
+    what.options = guided_options(what.options, cascades_of_charts);
+    add("guided", fmt::format("guided-{}", n), text, what);
   }
 
   void accuracy(const char* family, mc::Method method, bool control, double accuracy) {
@@ -185,6 +217,10 @@ ChartMethods list_simulations(const ChartSetting& setting) {
     for (const std::int64_t n : few) list.electrons("direct", mc::Method::direct, n);
   if (replays && wants(job, "replay"))
     for (const std::int64_t n : many) list.electrons("replay", mc::Method::replay, n);
+  if (wants(job, "guided"))
+    for (const std::int64_t n : job.quick ? std::vector<std::int64_t>{16, 64}
+                                          : std::vector<std::int64_t>{8, 16, 32, 64, 128, 256})
+      list.guided(replays ? mc::Method::replay : mc::Method::direct, n);
   for (const double accuracy : setting.accuracies) {
     if (wants(job, "direct-accuracy"))
       list.accuracy("direct-accuracy", mc::Method::direct, false, accuracy);
