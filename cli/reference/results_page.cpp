@@ -22,6 +22,7 @@ const Entries& other_metadata() {
       {"option.NAME",
        "value of a parameter of an AFM step that changes the result, as `option.level.method`"},
       {"detector.N", "a detector in the order of the channels, as `--detector` reads it"},
+      {"simulation.guided_by", "the fast model that guided an image, with its hash, or none"},
       {"simulation.dose", "electrons per pixel of the beam's current and dwell time"},
       {"specimen.substrate", "material and height of the half-space below"},
       {"specimen.height_field",
@@ -97,26 +98,40 @@ const Entries& sidecar_keys() {
 }  // namespace
 
 Entries image_channels() {
-  return {{"NAME",
-           "a detector's yield: electrons per primary, one channel for each of SE, BSE and "
-           "`--detector`"},
-          {"NAME.stderr", "standard error of that yield"},
-          {"NAME.shot", "the yield with the shot noise of the dose, where there is a dose"},
-          {"NAME.variance_left",
-           "share of the scatter that differences and planes leave, of `--channels "
-           "variance_left`"},
-          {"valid", "1 where the beam met the specimen, else 0"},
-          {"z_nm", "height of the point that the beam meets, of `--channels z_nm`"},
-          {"normal.x", "x of the surface's normal there, of `--channels normal`"},
-          {"normal.y", "y of the normal"},
-          {"normal.z", "z of the normal"},
-          {"material",
-           "number of the material there, as in `material.N.name`, of `--channels material`"},
-          {"electrons", "primaries that a pixel is the mean of, of `--channels electrons`"},
-          {"model",
-           "how a pixel was simulated, of `--channels model`: 0 none, 1 direct, 2 replay, 3 "
-           "difference, 4 "
-           "plane"}};
+  return {
+      {"NAME",
+       "a detector's yield: electrons per primary, one channel for each of SE, BSE and "
+       "`--detector`"},
+      {"NAME.stderr",
+       "standard error of that yield; of a guided image its root mean square error, bias "
+       "included"},
+      {"NAME.shot", "the yield with the shot noise of the dose, where there is a dose"},
+      {"NAME.variance_left",
+       "share of the scatter that differences and planes leave, of `--channels "
+       "variance_left`"},
+      {"NAME.radius",
+       "of a guided image, of `--channels radius`: radius in pixels of the disc whose mean would "
+       "be as noisy"},
+      {"NAME.plain", "the yield without guides, of `--channels plain`"},
+      {"NAME.plain.stderr", "its standard error"},
+      {"NAME.sum",
+       "electrons that the pixel's primaries sent to the detector, of `--channels "
+       "counts`"},
+      {"NAME.squares", "sum of the squares of each primary's number"},
+      {"NAME.odd_sum", "the sum over primaries of odd number, counted from 0"},
+      {"NAME.odd_squares", "their sum of squares"},
+      {"valid", "1 where the beam met the specimen, else 0"},
+      {"z_nm", "height of the point that the beam meets, of `--channels z_nm`"},
+      {"normal.x", "x of the surface's normal there, of `--channels normal`"},
+      {"normal.y", "y of the normal"},
+      {"normal.z", "z of the normal"},
+      {"material",
+       "number of the material there, as in `material.N.name`, of `--channels material`"},
+      {"electrons", "primaries that a pixel is the mean of, of `--channels electrons`"},
+      {"model",
+       "how a pixel was simulated, of `--channels model`: 0 none, 1 direct, 2 replay, 3 "
+       "difference, 4 "
+       "plane"}};
 }
 
 Entries image_metadata() {

@@ -48,7 +48,7 @@ semsurf_cli_usage(dose_and_electrons "Leave out --electrons" simulate cube.off -
 semsurf_cli_usage(current_unit "not a unit of current" simulate cube.off --current 1amp --dwell 1us --size 8x8 -o image.exr)
 semsurf_cli_usage(detector "no detector 'ring'" simulate cube.off --detector ring ${image})
 semsurf_cli_usage(detector_twice "given twice" simulate cube.off --detector SE1 --detector SE1 ${image})
-semsurf_cli_usage(surface_channel "z_nm, normal, material, electrons, model and variance_left" simulate cube.off --channels slope ${image})
+semsurf_cli_usage(surface_channel "counts, radius and plain" simulate cube.off --channels slope ${image})
 semsurf_cli_usage(method "auto, direct or replay" simulate cube.off --method fast ${image})
 semsurf_cli_usage(two_budgets "two ways.*Leave out --electrons, or --accuracy" simulate cube.off --accuracy 1% ${image})
 semsurf_cli_usage(accuracy_and_time "Leave out --accuracy, or --time" simulate cube.off --accuracy 1% --time 3s --size 8x8 -o image.exr)

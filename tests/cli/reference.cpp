@@ -116,6 +116,7 @@ TEST(Reference, NamesChannelsAndMetadataOfImages) {
       {"--detector", "quadrants", "--current", "10pA", "--dwell", "1us"},
       {"--electrons", "2", "--substrate", "Si", "--channels",
        "z_nm,normal,material,electrons,model,variance_left"},
+      {"--electrons", "8", "--estimate", "guided", "--channels", "counts,radius,plain"},
       {"--accuracy", "50%", "--method", "replay", "--mesh-tolerance", "1nm", "--unit", "um",
        "--override-unit"}};
   std::vector<reference::NamedEntry> channels = reference::image_channels();

@@ -103,7 +103,7 @@ Metadata provenance(const ResolvedJob& job, const mc::Scan& scan,
     out[fmt::format("input.{}", ++number)] =
         fmt::format("{} sha256 {}", input.path.filename().string(), input.sha256);
   out.merge(parameters_of(job));
-  if (job.estimate.kind != Estimate::plain) out.merge(surf::record_of(job.estimate));
+  out.merge(surf::record_of(job.estimate));
   out.merge(surf::record_of(scan));
   if (const double dose = mc::dose_of(job.options.budget); dose > 0)
     out["simulation.dose"] = format_exact(dose);

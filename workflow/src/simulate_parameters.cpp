@@ -16,7 +16,8 @@ void describe(ParameterVisitor& visit, EstimateOptions& options) {
          .help = "Fast model that guides: a file, auto for one of the cache that fits, or off",
          .otherwise = "auto",
          .form = "FILE|auto|off",
-         .level = Level::advanced});
+         .level = Level::advanced,
+         .file = FileRole::read});
 }
 
 void describe(ParameterVisitor& visit, Extras& extras) {
