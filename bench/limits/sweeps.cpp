@@ -41,6 +41,7 @@ std::span<const Sweep> sweeps() {
       registration_turn(),
       slivers(),
       thin_features(),
+      guided_detail(),
       tip_threshold(),
       tip_two_peaks(),
       training_pixels(),

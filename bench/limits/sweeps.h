@@ -38,6 +38,7 @@ Sweep registration_repeats();
 Sweep registration_start();
 Sweep registration_turn();
 Sweep slivers();
+Sweep guided_detail();
 Sweep thin_features();
 Sweep tip_threshold();
 Sweep tip_two_peaks();
