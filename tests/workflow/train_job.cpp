@@ -77,6 +77,29 @@ TEST_F(TrainJobTest, MakesItsImagesAndAModelThatSaysWhereItIsFrom) {
   EXPECT_NEAR(image.origin_x_nm, -22.5, 1e-6);
 }
 
+TEST_F(TrainJobTest, GuidesImagesThatTeachAndNotThoseThatJudge) {
+  TrainJob job = small_training(path("si.json"));
+  job.held_out = 1;
+  job.estimate = Estimate::guided;
+  job.simulation.budget = mc::ElectronsPerPixel{16};
+  const TrainSummary summary = train(job);
+  const std::vector<TrainingScene>& scenes = summary.model.record.scenes;
+  ASSERT_EQ(scenes.size(), 2u);
+  for (const TrainingScene& scene : scenes) {
+    const auto made = io::read_image(path("si.training") / (scene.name + ".exr")).metadata;
+    EXPECT_EQ(made.at("simulation.estimate"), scene.held_out ? "plain" : "guided") << scene.name;
+    EXPECT_EQ(made.contains("simulation.guided_by"), !scene.held_out);
+  }
+  job.learn.kind = "stopping-points";  // which no image teaches
+  job.held_out = 0;
+  job.output = path("table.json");
+  train(job);
+  for (const TrainingScene& scene : scenes)
+    EXPECT_EQ(io::read_image(path("table.training") / (scene.name + ".exr"))
+                  .metadata.at("simulation.estimate"),
+              "plain");
+}
+
 TEST_F(TrainJobTest, UsesImagesThatAreThereAndGivesTheSameBytes) {
   const TrainJob job = small_training(path("si.json"));
   train(job);

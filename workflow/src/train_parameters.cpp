@@ -210,6 +210,10 @@ void describe(ParameterVisitor& visit, TrainJob& job) {
   visit(job.held_out, {.name = "training.hold_out",
                        .help = "Number of the last surfaces that only judge the model",
                        .limits = within(0, 1000)});
+  visit(job.estimate, {"plain", "guided"},
+        {.name = "training.estimate",
+         .help = "How images that teach are estimated: guided by shape, fewer electrons do; "
+                 "images of surfaces that are held out stay plain"});
   show_or_none(
       visit, job.fine,
       {.name = "training.fine",

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 SimulateJob simulation_of(const TrainJob& job, const TrainingSurface& surface, std::size_t number,
-                          const fs::path& output) {
+                          bool teaches, const fs::path& output) {
   SimulateJob out;
   io::SceneFile& scene = out.scene;
   scene.specimen.materials = {job.material};
@@ -33,6 +33,8 @@ SimulateJob simulation_of(const TrainJob& job, const TrainingSurface& surface, s
   scene.scan.pixel_y_nm = surface.field.pitch_y_nm;
   scene.physics = job.physics;
   out.execution = job.simulation;
+  // What the model says itself must not guide its teachers.
+  if (teaches) out.estimate = {job.estimate, "off"};
   scene.budget = job.simulation.budget;
   // So that the libraries' chance errors differ from image to image.
   scene.seed = job.simulation.seed + number;
@@ -113,10 +115,15 @@ SimulatedImages simulate_images(const TrainJob& job, const std::vector<TrainingS
   const fs::path folder = image_folder(job);
   std::vector<SimulateJob> all;
   std::vector<const TrainingSurface*> shown;
+  const std::vector<LearnableKind> kinds = learnable_kinds();
+  const auto kind = std::ranges::find(kinds, job.learn.kind, &LearnableKind::name);
+  const bool only_judge = kind != kinds.end() && !kind->needs_images;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     if (surfaces[i].has_image()) continue;
     out.files[i] = folder / (surfaces[i].name + ".exr");
-    all.push_back(simulation_of(job, surfaces[i], i, out.files[i]));
+    const bool teaches =
+        !only_judge && i + static_cast<std::size_t>(job.held_out) < surfaces.size();
+    all.push_back(simulation_of(job, surfaces[i], i, teaches, out.files[i]));
     shown.push_back(&surfaces[i]);
   }
   const std::string wanted = what_is_missing(all, folder, reporter.on_note, team);

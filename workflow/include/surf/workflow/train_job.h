@@ -19,6 +19,7 @@
 #include "surf/mc/physics/physics.h"
 #include "surf/mc/simulate.h"
 #include "surf/sem/trained_model.h"
+#include "surf/workflow/estimate_options.h"
 #include "surf/workflow/reporter.h"
 #include "surf/workflow/simulate_job.h"
 
@@ -89,6 +90,9 @@ struct TrainJob {
   /// samples are at most a fifth of the range apart.
   int fine = 0;
   int held_out = 0;  ///< the last surfaces, this many, only judge the model
+  /// How the images that teach are estimated: guided by shape they need fewer electrons. Images of
+  /// surfaces that are held out stay plain.
+  Estimate estimate = Estimate::plain;
 
   /// If not empty: the images are from a real microscope, in one channel of this name, in any unit.
   /// Empty: they are as written by `simulate`, with SE, BSE and optionally SE.stderr and
