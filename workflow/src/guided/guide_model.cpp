@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "surf/afm/resample.h"
@@ -64,15 +65,25 @@ std::optional<GuideModel> find_stored(const mc::Scene& scene, const fs::path& fo
   return best;
 }
 
-double lerp(const Grid<double>& image, double x, double y) {
+/// Cubic convolution (Keys 1981, doi:10.1109/TASSP.1981.1163711): without kinks at samples, which
+/// would look like detail.
+std::array<double, 4> cubic_weights(double t) {
+  return {((-0.5 * t + 1) * t - 0.5) * t, (1.5 * t - 2.5) * t * t + 1,
+          ((-1.5 * t + 2) * t + 0.5) * t, (0.5 * t - 0.5) * t * t};
+}
+
+double interpolated(const Grid<double>& image, double x, double y) {
   x = std::clamp(x, 0.0, image.width() - 1.0);
   y = std::clamp(y, 0.0, image.height() - 1.0);
-  const int x0 = std::min(static_cast<int>(x), std::max(0, image.width() - 2)),
-            y0 = std::min(static_cast<int>(y), std::max(0, image.height() - 2));
-  const int x1 = std::min(x0 + 1, image.width() - 1), y1 = std::min(y0 + 1, image.height() - 1);
-  const double tx = x - x0, ty = y - y0;
-  return (1 - ty) * ((1 - tx) * image(x0, y0) + tx * image(x1, y0)) +
-         ty * ((1 - tx) * image(x0, y1) + tx * image(x1, y1));
+  const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
+  const auto wx = cubic_weights(x - x0), wy = cubic_weights(y - y0);
+  double sum = 0;
+  for (int v = 0; v < 4; ++v)
+    for (int u = 0; u < 4; ++u)
+      sum += wx[static_cast<std::size_t>(u)] * wy[static_cast<std::size_t>(v)] *
+             image(std::clamp(x0 + u - 1, 0, image.width() - 1),
+                   std::clamp(y0 + v - 1, 0, image.height() - 1));
+  return sum;
 }
 
 }  // namespace
@@ -129,8 +140,8 @@ std::vector<Guide> predicted_guides(const GuideModel& guide, const SeenSurface& 
     Guide predicted{guide.model->channels()[c], Grid<double>(width, height, 0.0), true};
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x)
-        predicted.values(x, y) = lerp(images[c], x * field.pitch_x_nm / seen.pitch_x_nm,
-                                      y * field.pitch_y_nm / seen.pitch_y_nm);
+        predicted.values(x, y) = interpolated(images[c], x * field.pitch_x_nm / seen.pitch_x_nm,
+                                              y * field.pitch_y_nm / seen.pitch_y_nm);
     guides.push_back(std::move(predicted));
   }
   return guides;
