@@ -25,6 +25,7 @@ constexpr double least_yield_share = 0.1;  // of the mean: darker pixels do not 
 // Squared bias over spread, for each class of detail, where nothing more is known: as rough ground,
 // a mesa, a trench and a sphere have it (docs/development/guided_images.md).
 constexpr double usual_bias[detail_classes] = {0.25, 0.5, 0.8};
+constexpr double unguided_bias = 0.5;  // where windows are all there is
 constexpr double most_variance_scale = 4;
 constexpr double detail_sigma_px = 1.5;
 constexpr double detail_ranks[detail_classes] = {0.5, 0.85, 0.97};  // of the middle of each class
@@ -166,13 +167,14 @@ struct ErrorModel {
   std::array<double, detail_classes> variance{};  ///< over that by the windows' weights
   std::array<double, detail_classes> bias{};      ///< squared, over the spread
 
-  std::array<double, detail_classes> level{1, 1, 1};  ///< of both, by Stein's risk of the class
+  std::array<double, detail_classes> level{1, 1, 1};  ///< of bias, by Stein's risk of the class
 
   double variance_scale(double detail) const { return of(variance, detail); }
+  double bias_of(double spread, double detail) const { return of(bias, detail) * spread; }
   /// The squared error of a pixel's estimate from this variance by the windows' weights.
   double expected(double variance_by_weights, double spread, double detail) const {
-    return of(level, detail) *
-           (of(variance, detail) * variance_by_weights + of(bias, detail) * spread);
+    return of(variance, detail) * variance_by_weights +
+           of(level, detail) * of(bias, detail) * spread;
   }
 
  private:
@@ -211,7 +213,8 @@ double fit_bias(const GuidedRegion& r, const GuidedPlanes& planes, const ErrorMo
       product += risk * spread / doubt;
       square += spread * spread / doubt;
     }
-  const double expected = usual_bias[detail_class], before = 1 / (expected * expected);
+  const double expected = r.guides.empty() ? unguided_bias : usual_bias[detail_class],
+               before = 1 / (expected * expected);
   return std::max(0.0, (product + before * expected) / (square + before));
 }
 
@@ -223,7 +226,8 @@ double combine(double expected, double seen, double doubt) {
   return std::max(expected + prior / (prior + doubt) * (seen - expected), 0.5 * expected);
 }
 
-/// What Stein's risk says of a class as a whole, over what is expected of it.
+/// What Stein's risk says of the squared bias of a class as a whole, over what is expected of it:
+/// as in `combine`. Where counts tell it well it may be next to nothing.
 double level_of(const GuidedRegion& r, const GuidedPlanes& planes, const ErrorModel& model,
                 int detail_class) {
   double seen = 0, expected = 0, doubt = 0, noise = 0;
@@ -232,13 +236,17 @@ double level_of(const GuidedRegion& r, const GuidedPlanes& planes, const ErrorMo
     const double w = share_of_class(detail_class, r.detail[i]) * r.weight[i];
     if (w == 0) continue;
     const PixelErrors e = errors_of(r, planes, i);
-    seen += w * (e.risk - model.variance_scale(r.detail[i]) * e.variance);
-    expected += w * model.expected(e.variance, planes.spread[i], r.detail[i]);
+    // A half's variance is twice that of the mean of both.
+    seen += w * (e.risk - 2 * model.variance_scale(r.detail[i]) * e.variance);
+    expected += w * model.bias_of(planes.spread[i], r.detail[i]);
     doubt += std::pow(w * e.half_noise, 2);
     noise += w * e.half_noise;
   }
   doubt += r.variance.noise_scale_doubt * noise * noise;
-  return expected > 0 ? combine(1, seen / expected, doubt / (expected * expected)) : 1;
+  if (!(expected > 0)) return 1;
+  doubt /= expected * expected;
+  const double left = std::sqrt(doubt / (1 + doubt));  // standard deviation of what is combined
+  return std::max(1 + (seen / expected - 1) / (1 + doubt), left);
 }
 
 ErrorModel fit_errors(const GuidedRegion& r, const GuidedPlanes& planes) {
