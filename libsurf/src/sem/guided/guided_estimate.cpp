@@ -167,14 +167,14 @@ struct ErrorModel {
   std::array<double, detail_classes> variance{};  ///< over that by the windows' weights
   std::array<double, detail_classes> bias{};      ///< squared, over the spread
 
-  std::array<double, detail_classes> level{1, 1, 1};  ///< of bias, by Stein's risk of the class
+  std::array<double, detail_classes> level{1, 1, 1};  ///< of both, by Stein's risk of the class
 
   double variance_scale(double detail) const { return of(variance, detail); }
-  double bias_of(double spread, double detail) const { return of(bias, detail) * spread; }
-  /// The squared error of a pixel's estimate from this variance by the windows' weights.
+  /// The squared error of a pixel's estimate from this variance by the windows' weights: never
+  /// below its variance, which the halves tell well.
   double expected(double variance_by_weights, double spread, double detail) const {
-    return of(variance, detail) * variance_by_weights +
-           of(level, detail) * of(bias, detail) * spread;
+    const double noise = of(variance, detail) * variance_by_weights;
+    return std::max(of(level, detail) * (noise + of(bias, detail) * spread), noise);
   }
 
  private:
@@ -226,8 +226,8 @@ double combine(double expected, double seen, double doubt) {
   return std::max(expected + prior / (prior + doubt) * (seen - expected), 0.5 * expected);
 }
 
-/// What Stein's risk says of the squared bias of a class as a whole, over what is expected of it:
-/// as in `combine`. Where counts tell it well it may be next to nothing.
+/// What Stein's risk says of a class as a whole, over what is expected of it: as in `combine`.
+/// Where counts tell it well it may be much less.
 double level_of(const GuidedRegion& r, const GuidedPlanes& planes, const ErrorModel& model,
                 int detail_class) {
   double seen = 0, expected = 0, doubt = 0, noise = 0;
@@ -236,9 +236,8 @@ double level_of(const GuidedRegion& r, const GuidedPlanes& planes, const ErrorMo
     const double w = share_of_class(detail_class, r.detail[i]) * r.weight[i];
     if (w == 0) continue;
     const PixelErrors e = errors_of(r, planes, i);
-    // A half's variance is twice that of the mean of both.
-    seen += w * (e.risk - 2 * model.variance_scale(r.detail[i]) * e.variance);
-    expected += w * model.bias_of(planes.spread[i], r.detail[i]);
+    seen += w * (e.risk - model.variance_scale(r.detail[i]) * e.variance);
+    expected += w * model.expected(e.variance, planes.spread[i], r.detail[i]);
     doubt += std::pow(w * e.half_noise, 2);
     noise += w * e.half_noise;
   }
@@ -246,7 +245,7 @@ double level_of(const GuidedRegion& r, const GuidedPlanes& planes, const ErrorMo
   if (!(expected > 0)) return 1;
   doubt /= expected * expected;
   const double left = std::sqrt(doubt / (1 + doubt));  // standard deviation of what is combined
-  return std::max(1 + (seen / expected - 1) / (1 + doubt), left);
+  return std::max(1 + (seen / expected - 1) / (1 + doubt), 0.5 * left);
 }
 
 ErrorModel fit_errors(const GuidedRegion& r, const GuidedPlanes& planes) {
