@@ -395,7 +395,7 @@ void LiveSimulation::Shared::run() {
         has_fine = true;
         tell();
       };
-      if (job.estimate.kind == workflow::Estimate::guided)
+      if (job.estimate.kind != workflow::Estimate::plain && options.odd_counts)
         return simulate_guided(scene, options, context, show);
       Shown shown(scan, options, show);
       mc::SimulationContext own = context;

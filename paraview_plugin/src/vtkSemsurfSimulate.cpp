@@ -211,7 +211,7 @@ int vtkSemsurfSimulate::RequestData(vtkInformation*, vtkInformationVector** inpu
           output->Has(Pipeline::UPDATE_NUMBER_OF_PIECES()) &&
           output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) == ranks->GetNumberOfProcesses();
       if (!spread) ranks = nullptr;
-      if (ranks && k.job.estimate.kind == workflow::Estimate::guided &&
+      if (ranks && k.job.estimate.kind != workflow::Estimate::plain &&
           mc::accuracy_of(k.job.scene.budget) > 0)
         throw UsageError("`simulation.accuracy`",
                          "guided images reach it in rounds, which ParaView's ranks do not share",

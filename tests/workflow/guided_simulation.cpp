@@ -133,6 +133,19 @@ TEST(GuidedSimulation, TimeBecomesANumberOfElectrons) {
   for (std::size_t d = 0; d < 2; ++d) EXPECT_EQ(in_time.guided[d].mean, again.guided[d].mean);
 }
 
+TEST(GuidedSimulation, IsChosenWhereItPays) {
+  SimulateJob job = guided_job();
+  job.estimate.kind = Estimate::automatic;
+  job.scene.budget = mc::ElectronsPerPixel{16};
+  EXPECT_TRUE(run(job).guided.empty());  // 480 pixels
+  job.scene.scan.width = job.scene.scan.height = 40;
+  const SimulateSummary done = run(job);
+  EXPECT_FALSE(done.guided.empty());
+  EXPECT_EQ(done.record.at("simulation.estimate"), "guided");
+  job.scene.budget = mc::ElectronsPerPixel{2};
+  EXPECT_TRUE(run(job).guided.empty());
+}
+
 TEST(GuidedSimulation, KeepsWhatTheMiddleOfTheBeamMissesAsItIs) {
   SimulateJob job = guided_job();
   job.scene.specimen.substrate.reset();

@@ -238,6 +238,9 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
     facts = facts_of(job.scene.specimen, node, {{}, cancel});
     summary.scan = resolve_scan(job.scene.scan, facts.extent, job.scene.beam);
     check_trajectories(job, summary.scan);
+    if (job.estimate.kind == Estimate::automatic)
+      job.estimate.kind =
+          guides_pay(job.options, summary.scan) ? Estimate::guided : Estimate::plain;
     if (job.estimate.kind == Estimate::guided) check_guided(job.options, summary.scan);
     // The first process's meshes are traced.
     if (node && !node->is_first())

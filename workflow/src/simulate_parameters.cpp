@@ -6,10 +6,11 @@
 namespace surf::workflow {
 
 void describe(ParameterVisitor& visit, EstimateOptions& options) {
-  visit(options.kind, {"plain", "guided"},
+  visit(options.kind, {"plain", "guided", "auto"},
         {.name = "simulation.estimate",
          .help = "A pixel's value from its own electrons alone (plain), or with the help of those "
-                 "around it (guided): far fewer electrons for the same error",
+                 "around it (guided): far fewer electrons for the same error; auto: guided where "
+                 "that pays",
          .otherwise = "plain"});
   visit(options.model,
         {.name = "simulation.guide_model",

@@ -132,6 +132,17 @@ void check_guided(const mc::SimulationOptions& options, const mc::Scan& scan) {
                      "Choose a smaller scan, or `simulation.estimate=plain`");
 }
 
+bool guides_pay(const mc::SimulationOptions& options, const mc::Scan& scan) {
+  constexpr std::int64_t fewest_pixels = 32 * 32;
+  constexpr double most_electrons = 4000, finest = 0.005;
+  const std::int64_t pixels = std::int64_t{scan.width} * scan.height;
+  if (pixels < fewest_pixels || pixels > most_pixels) return false;
+  if (const double accuracy = mc::accuracy_of(options.budget); accuracy > 0)
+    return accuracy >= finest;
+  const double electrons = mc::mean_electrons_of(options.budget);
+  return electrons >= fewest_guided_electrons && electrons <= most_electrons;
+}
+
 mc::Budget expected_budget(const mc::Budget& budget) {
   const double accuracy = mc::accuracy_of(budget);
   if (!(accuracy > 0)) return budget;

@@ -21,6 +21,10 @@ inline constexpr double fewest_guided_electrons = 8;
 /// Throws UsageError for what cannot be estimated with guides.
 void check_guided(const mc::SimulationOptions& options, const mc::Scan& scan);
 
+/// Whether guides are worth their time: not for images of few pixels, very many or very few
+/// electrons, nor for more pixels than they can have.
+bool guides_pay(const mc::SimulationOptions& options, const mc::Scan& scan);
+
 /// The options of guided simulations: counts in halves, and libraries whose own share of the error
 /// is small beside what is asked for.
 /// `cascades_that_fit`: into memory.

@@ -7,8 +7,9 @@
 
 namespace surf::workflow {
 
-/// How the yield of a pixel is estimated: from its own electrons, or from those around it as well.
-enum class Estimate { plain, guided };
+/// How the yield of a pixel is estimated: from its own electrons, from those around it as well, or
+/// with guides where that pays.
+enum class Estimate { plain, guided, automatic };
 
 struct EstimateOptions {
   Estimate kind = Estimate::plain;
