@@ -32,6 +32,7 @@ Examples:
   semsurf simulate samples/mesa80.toml --electrons 1000 --seed 2 -o mesa.vti
   semsurf simulate samples/mesa80.toml --accuracy 2% --channels model,electrons -o mesa.exr
   semsurf simulate samples/mesa80.toml --time 30s -o mesa.exr
+  semsurf simulate samples/cube.toml --electrons 32 --estimate guided -o cube.exr
   semsurf simulate cube.stl --materials mine.toml --material nitride -o nitride.exr
   semsurf simulate scan.gwy --height-channel ZSensor -o sem.exr
   semsurf simulate afm.tif --height-pitch 2nm --height-unit 0.1nm --edge mirror -o sem.exr

@@ -50,6 +50,7 @@ def cases():
     yield "Reconstruct", lambda: simple.Reconstruct(Input=scan, SEM=sem, Tip=probe, Material="Si", UseTransform=1), False
     yield "Calibrate", lambda: simple.CalibrateSEM(Input=sem, Simulated=sem, Offset="-1", Black="-1"), True
     yield "Predict", lambda: simple.PredictSEM(Input=scan, ModelFile=MODEL), True
+    yield "Estimate", lambda: simple.EstimateSEM(Input=sem), False
     yield "Drape", lambda: simple.DrapeImageonSurface(Input=sheet, Image=scan), True
     yield "LineProfile", lambda: simple.LineProfile(Input=scan, SEM=sem, Surface=sheet, Samples=9), True
     yield "ToSurface", lambda: simple.HeightFieldtoSurface(Input=scan, Simplify=1, Solid=1), True

@@ -56,6 +56,17 @@ TEST(DryRun, FilesAreNoLargerThanItSays) {
   }
 }
 
+TEST(DryRun, CountsTheFewElectronsOfGuidedImages) {
+  const test::TemporaryFolder folder;
+  SimulateJob job = job_in(folder.path());
+  job.scene.method = mc::Method::direct;
+  job.scene.budget = mc::Accuracy{0.05, 0.002};
+  job.estimate.kind = Estimate::guided;
+  EXPECT_NEAR(dry_run(job, 1, 0.2).pilot.primaries, 12 * 9 * 40, 12 * 9);
+  job.scene.budget = mc::ElectronsPerPixel{4};
+  EXPECT_THROW(dry_run(job, 1, 0.2), UsageError);
+}
+
 TEST(DryRun, LargeImagesHaveScratchFiles) {
   const test::TemporaryFolder folder;
   SimulateJob job = job_in(folder.path());

@@ -9,6 +9,7 @@
 
 #include "disk_needs.h"
 #include "extras.h"
+#include "guided/guided_simulation.h"
 #include "job_libraries.h"
 #include "simulation_setup.h"
 #include "surf/core/error.h"
@@ -61,6 +62,7 @@ DryRun dry_run(SimulateJob asked, int ranks, double seconds, const Reporter& rep
   const CancelToken* const cancel = reporter.cancel;
   check_extras(asked.extras);
   ResolvedJob job = resolve(std::move(asked));
+  check_extras_of(job);
   check_outputs(job);
   check_checkpoint(job);
   SimulateSummary summary;
@@ -68,9 +70,14 @@ DryRun dry_run(SimulateJob asked, int ranks, double seconds, const Reporter& rep
   const SpecimenFacts facts = facts_of(job.scene.specimen, nullptr, {{}, cancel});
   out.scan = summary.scan = resolve_scan(job.scene.scan, facts.extent, job.scene.beam);
   check_trajectories(job, out.scan);
+  settle_estimate(job.estimate, job.options, out.scan);
   const mc::Scene scene = make_scene(job, facts, nullptr, reporter.on_note, cancel, summary);
   out.scene = scene.summary();
   out.warnings = warn_before(job, facts, out.scan);
+  if (double fit = 1e6; job.estimate.kind == Estimate::guided) {
+    job.options = expected_options(scene, job.options, fit);
+    job.options.odd_counts = true;
+  }
   out.choice =
       mc::choose_method(scene, job.options, job.scene.method, {job.extras.deposit_cells > 0});
   job.options.method = out.choice.method;

@@ -238,10 +238,7 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
     facts = facts_of(job.scene.specimen, node, {{}, cancel});
     summary.scan = resolve_scan(job.scene.scan, facts.extent, job.scene.beam);
     check_trajectories(job, summary.scan);
-    if (job.estimate.kind == Estimate::automatic)
-      job.estimate.kind =
-          guides_pay(job.options, summary.scan) ? Estimate::guided : Estimate::plain;
-    if (job.estimate.kind == Estimate::guided) check_guided(job.options, summary.scan);
+    settle_estimate(job.estimate, job.options, summary.scan);
     // The first process's meshes are traced.
     if (node && !node->is_first())
       for (mc::Body& body : job.scene.specimen.bodies) body.mesh = {};
@@ -255,15 +252,10 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
       for (const std::string& warning : warn_of_full_disks(disk_needs(job, summary.scan)))
         warn(warning);
     note(warnings_of(job.scene.specimen, summary.simplification));
-    mc::SimulationOptions expected = job.options;
-    if (job.estimate.kind == Estimate::guided) {
-      expected.budget = expected_budget(job.options.budget);
-      const mc::MethodChoice few = mc::choose_method(*ready, expected);
-      if (few.library_bytes > 0)
-        cascades_that_fit = 0.9 * mc::MethodLimits{}.library_bytes *
-                            static_cast<double>(few.cascades) / few.library_bytes;
-      expected.least_cascades = guided_options(job.options, cascades_that_fit).least_cascades;
-    }
+    const mc::SimulationOptions expected =
+        job.estimate.kind == Estimate::guided
+            ? expected_options(*ready, job.options, cascades_that_fit)
+            : job.options;
     summary.choice =
         mc::choose_method(*ready, expected, job.scene.method, {job.extras.deposit_cells > 0});
     job.options.method = summary.choice.method;

@@ -13,6 +13,7 @@
 #include "guided/guided_images.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
+#include "surf/mc/sampling/choose_method.h"
 
 namespace surf::workflow {
 namespace {
@@ -26,7 +27,7 @@ constexpr double least_growth = 1.3;
 constexpr double most_growth = 4;  // of a pixel's electrons in a round
 constexpr double around_px = 5;    // of the neighbourhood that an accuracy is reached in
 constexpr double least_target = 1e-9;
-constexpr double share_of_time = 0.9;
+constexpr double share_of_time = 0.9, share_of_memory = 0.9;
 
 constexpr double reserve = 1.1;  // over what the estimate of the error asks for
 // Cascades for each electron of a pixel: a guided pixel is the mean of up to a hundred, and the
@@ -115,7 +116,17 @@ Grid<std::int64_t> unpacked(const std::string& bytes, int width, int height) {
   return numbers;
 }
 
-}  // namespace
+/// Whether guides are worth their time.
+bool guides_pay(const mc::SimulationOptions& options, const mc::Scan& scan) {
+  constexpr std::int64_t fewest_pixels = 32 * 32;
+  constexpr double most_electrons = 4000, finest = 0.005;
+  const std::int64_t pixels = std::int64_t{scan.width} * scan.height;
+  if (pixels < fewest_pixels || pixels > most_pixels) return false;
+  if (const double accuracy = mc::accuracy_of(options.budget); accuracy > 0)
+    return accuracy >= finest;
+  const double electrons = mc::mean_electrons_of(options.budget);
+  return electrons >= fewest_guided_electrons && electrons <= most_electrons;
+}
 
 void check_guided(const mc::SimulationOptions& options, const mc::Scan& scan) {
   const double electrons = mc::mean_electrons_of(options.budget);
@@ -132,23 +143,34 @@ void check_guided(const mc::SimulationOptions& options, const mc::Scan& scan) {
                      "Choose a smaller scan, or `simulation.estimate=plain`");
 }
 
-bool guides_pay(const mc::SimulationOptions& options, const mc::Scan& scan) {
-  constexpr std::int64_t fewest_pixels = 32 * 32;
-  constexpr double most_electrons = 4000, finest = 0.005;
-  const std::int64_t pixels = std::int64_t{scan.width} * scan.height;
-  if (pixels < fewest_pixels || pixels > most_pixels) return false;
-  if (const double accuracy = mc::accuracy_of(options.budget); accuracy > 0)
-    return accuracy >= finest;
-  const double electrons = mc::mean_electrons_of(options.budget);
-  return electrons >= fewest_guided_electrons && electrons <= most_electrons;
-}
-
+/// What an accuracy is expected to take, as a number of electrons; other budgets as they are.
 mc::Budget expected_budget(const mc::Budget& budget) {
   const double accuracy = mc::accuracy_of(budget);
   if (!(accuracy > 0)) return budget;
   return mc::ElectronsPerPixel{std::max<std::int64_t>(
       first_round_electrons,
       static_cast<std::int64_t>(usual_guided_variance / (accuracy * accuracy)))};
+}
+
+}  // namespace
+
+void settle_estimate(EstimateOptions& estimate, const mc::SimulationOptions& options,
+                     const mc::Scan& scan) {
+  if (estimate.kind == Estimate::automatic)
+    estimate.kind = guides_pay(options, scan) ? Estimate::guided : Estimate::plain;
+  if (estimate.kind == Estimate::guided) check_guided(options, scan);
+}
+
+mc::SimulationOptions expected_options(const mc::Scene& scene, const mc::SimulationOptions& options,
+                                       double& cascades_that_fit) {
+  mc::SimulationOptions expected = options;
+  expected.budget = expected_budget(options.budget);
+  const mc::MethodChoice few = mc::choose_method(scene, expected);
+  if (few.library_bytes > 0)
+    cascades_that_fit = share_of_memory * mc::MethodLimits{}.library_bytes *
+                        static_cast<double>(few.cascades) / few.library_bytes;
+  expected.least_cascades = guided_options(options, cascades_that_fit).least_cascades;
+  return expected;
 }
 
 mc::SimulationOptions guided_options(mc::SimulationOptions options, double cascades_that_fit) {

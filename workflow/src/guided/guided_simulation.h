@@ -18,20 +18,20 @@ inline constexpr std::int64_t first_round_electrons = 32;
 /// Fewer electrons than this, on average, say too little of their own scatter.
 inline constexpr double fewest_guided_electrons = 8;
 
-/// Throws UsageError for what cannot be estimated with guides.
-void check_guided(const mc::SimulationOptions& options, const mc::Scan& scan);
-
-/// Whether guides are worth their time: not for images of few pixels, very many or very few
-/// electrons, nor for more pixels than they can have.
-bool guides_pay(const mc::SimulationOptions& options, const mc::Scan& scan);
+/// Settles whether an image is guided: `automatic` is where that pays, which it does not for few
+/// pixels, nor for very few or very many electrons. Throws UsageError for what cannot be guided.
+void settle_estimate(EstimateOptions& estimate, const mc::SimulationOptions& options,
+                     const mc::Scan& scan);
 
 /// The options of guided simulations: counts in halves, and libraries whose own share of the error
 /// is small beside what is asked for.
 /// `cascades_that_fit`: into memory.
 mc::SimulationOptions guided_options(mc::SimulationOptions options, double cascades_that_fit);
 
-/// What an accuracy is expected to take, as a number of electrons; other budgets as they are.
-mc::Budget expected_budget(const mc::Budget& budget);
+/// What a guided simulation is expected to take: an accuracy as a number of electrons, and
+/// libraries as large as they will be. Sets how many cascades fit into memory.
+mc::SimulationOptions expected_options(const mc::Scene& scene, const mc::SimulationOptions& options,
+                                       double& cascades_that_fit);
 
 struct GuidedSimulation {
   mc::SimulationResult result;
