@@ -34,6 +34,7 @@ set(SEMSURF_TOO_LONG_EMULATED
   "LibrarySize\\..*"
   "LossSampler\\..*"
   "Mott\\.(ReproducesTheTransportCrossSections|SamplesTheTablesAroundAnEnergy)"
+  "OddCounts\\.(AreHalf|Rounds).*"
   "Pilot\\..*"
   "Replay\\.(Generates|GivesTheSameNumbersWithLosses|HandsOver|Refuses|Reports).*"
   "Scene\\.(Keeps|LeavesOut|LetsThe|LosesNobody|SeesHollows|TreatsFaces).*"
