@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <functional>
+#include <limits>
+
 #include "small_job.h"
 #include "surf/core/error.h"
 #include "surf/io/image_file.h"
@@ -52,6 +55,47 @@ TEST(EstimateJob, MakesOfCountsWhatSimulateMakesAtOnce) {
                       at_once.find(detector + ending)->values(x, y), 1e-5)
               << detector << ending;
   EXPECT_EQ(after.metadata.at("simulation.estimate"), "guided");
+  // With the detectors' efficiency, as plain yields have it.
+  const Image plain = io::read_image(folder.path() / "plain.exr");
+  for (const std::string& detector : done.detectors) {
+    double guided = 0, counted = 0;
+    for (const float value : after.find(detector)->values.data()) guided += value;
+    for (const float value : plain.find(detector)->values.data()) counted += value;
+    EXPECT_NEAR(guided / counted, 1, 0.05) << detector;
+  }
+}
+
+TEST(EstimateJob, RefusesWhatNoSimulationWrites) {
+  const TemporaryFolder folder;
+  SimulateJob job = counted_job();
+  job.outputs = {folder.path() / "plain.exr"};
+  run(job);
+  const Image good = io::read_image(job.outputs[0]);
+  const auto said_of = [&](const std::function<void(Image&)>& change) {
+    EstimateJob estimate;
+    estimate.image = good;
+    change(estimate.image);
+    try {
+      run(estimate);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  const auto pixel = [](const char* channel, float value) {
+    return [=](Image& image) {
+      for (Channel& c : image.channels)
+        if (c.name == channel) c.values(3, 4) = value;
+    };
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THAT(said_of(pixel("SE.sum", -1)), HasSubstr("SE.sum"));
+  EXPECT_THAT(said_of(pixel("electrons", nan)), HasSubstr("electrons"));
+  EXPECT_THAT(said_of(pixel("BSE.odd_squares", 1e30f)), HasSubstr("BSE.odd_squares"));
+  EXPECT_THAT(said_of(pixel("material", nan)), HasSubstr("material"));
+  EXPECT_THAT(said_of(pixel("z_nm", nan)), HasSubstr("guide"));
+  EXPECT_THAT(said_of([](Image& image) { image.metadata["beam.tilt_deg"] = "95"; }),
+              HasSubstr("tilt"));
 }
 
 TEST(EstimateJob, IsGuidedByAnyChannelOrByNeighboursAlone) {

@@ -100,24 +100,44 @@ TEST(GuidedSimulation, GoesOnFromAnyRoundToTheSameBytes) {
   job.outputs = {folder.path() / "whole.exr"};
   const SimulateSummary whole = run(job);
   const std::string wanted = bytes_of(folder.path() / "whole.exr");
-  for (const int units : {3, 11}) {
-    job.outputs = {folder.path() / (std::to_string(units) + ".exr")};
+  for (const int rounds_before : {0, 1, 2}) {
+    job.outputs = {folder.path() / (std::to_string(rounds_before) + ".exr")};
     CancelToken cancel;
-    int seen = 0;
+    int rounds = 0, units = 0;
     Reporter stop;
     stop.cancel = &cancel;
+    stop.on_note = [&](const std::string& text) { rounds += text.starts_with("round "); };
     stop.on_progress = [&](double, double, std::string_view things) {
-      if (things == "primaries" && ++seen == units) cancel.cancel();
+      if (things == "primaries" && rounds == rounds_before && ++units == 3) cancel.cancel();
     };
     const SimulateSummary part = run(job, stop);
     EXPECT_FALSE(part.result.complete);
+    EXPECT_EQ(part.rounds, rounds_before + 1);
     EXPECT_EQ(io::read_image(job.outputs[0]).metadata.at("partial"), "true");
     const SimulateSummary rest = run(job);
     EXPECT_TRUE(rest.result.complete);
     EXPECT_GT(rest.result.recalled, 0);
     EXPECT_EQ(rest.rounds, whole.rounds);
-    EXPECT_TRUE(bytes_of(job.outputs[0]) == wanted) << units;
+    EXPECT_TRUE(bytes_of(job.outputs[0]) == wanted) << rounds_before;
   }
+}
+
+TEST(GuidedSimulation, RoundsCountEachPrimaryOnce) {
+  SimulateJob job = job_in_rounds();
+  const SimulateSummary rounds = run(job);
+  ASSERT_GT(rounds.rounds, 2);
+  job.estimate.kind = Estimate::plain;
+  job.scene.budget = mc::ElectronsPerPixel{rounds.statistics.most_electrons};
+  const SimulateSummary at_once = run(job);
+  int compared = 0;
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 24; ++x) {
+      if (rounds.result.pixels(x, y).primaries != rounds.statistics.most_electrons) continue;
+      ++compared;
+      EXPECT_EQ(rounds.result.counts[0](x, y), at_once.result.counts[0](x, y));
+      EXPECT_EQ(rounds.result.counts[1](x, y), at_once.result.counts[1](x, y));
+    }
+  EXPECT_GT(compared, 0);
 }
 
 TEST(GuidedSimulation, TimeBecomesANumberOfElectrons) {

@@ -54,6 +54,22 @@ TEST(OddCounts, AreHalfOfThePrimaries) {
   }
 }
 
+TEST(OddCounts, AreOfTheNumbersThatAreOdd) {
+  const Scene scene = flat_scene();
+  for (const std::int64_t first : {0, 1, 6, 7}) {
+    SimulationOptions options = counted(Method::direct, 1);
+    options.primaries = numbers(first, first + 1);
+    const SimulationResult r = simulate(scene, options);
+    std::int64_t all = 0;
+    for (int y = 0; y < 7; ++y)
+      for (int x = 0; x < 7; ++x) {
+        all += r.counts[0](x, y).sum;
+        EXPECT_EQ(r.odd_counts[0](x, y), first % 2 == 1 ? r.counts[0](x, y) : Counts{}) << first;
+      }
+    EXPECT_GT(all, 0);
+  }
+}
+
 TEST(OddCounts, RoundsAddUpToOneSimulation) {
   const Scene scene = flat_scene();
   for (const Method method : {Method::direct, Method::replay}) {

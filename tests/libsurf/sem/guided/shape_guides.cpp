@@ -46,6 +46,22 @@ TEST(ShapeGuides, SayWhereStepsAre) {
   }
 }
 
+TEST(ShapeGuides, LookAtTheSkyAllAround) {
+  const SeenSurface east = step();
+  SeenSurface west = east, north = east;
+  north.height_nm = Grid<double>(64, 40, 0.0);
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 64; ++x) {
+      west.height_nm(x, y) = east.height_nm(63 - x, y);
+      if (y >= 20) north.height_nm(x, y) = 40;
+    }
+  const Grid<double> to_east = named(shape_guides(east), "sky"),
+                     to_west = named(shape_guides(west), "sky"),
+                     to_north = named(shape_guides(north), "sky");
+  for (int x = 20; x < 32; ++x) EXPECT_NEAR(to_west(63 - x, 20), to_east(x, 20), 1e-12) << x;
+  EXPECT_LT(to_north(32, 19), 0.6);
+}
+
 TEST(ShapeGuides, TiltIsThePathUnderTheSurface) {
   SeenSurface s = step();
   s.cosine(10, 10) = 0.5;
