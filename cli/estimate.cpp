@@ -56,11 +56,7 @@ int estimate(const Options& o) {
   for (const std::string& guide : s.guides) by += (by.empty() ? "" : ", ") + guide;
   line("guided by", by.empty() ? "neighbours alone: the image shows no surface" : by);
   for (std::size_t d = 0; d < s.gains.size(); ++d) line(s.detectors[d], format_gain(s.gains[d]));
-  std::string label = "written";
-  for (const auto& output : job.outputs) {
-    line(label, output.string());
-    label.clear();
-  }
+  print_written(job.outputs);
   return 0;
 }
 

@@ -117,11 +117,7 @@ int predict(const Options& o) {
                             format_length(s.image.pitch_x_nm), s.seconds));
   line("surface", format_range(s.range));
   for (const Channel& channel : s.image.channels) line(channel.name, format_values(channel));
-  std::string label = "written";
-  for (const auto& output : job.outputs) {
-    line(label, output.string());
-    label.clear();
-  }
+  print_written(job.outputs);
   return 0;
 }
 

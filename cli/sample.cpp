@@ -124,11 +124,7 @@ int sample(const Options& o) {
   print_line("AFM", fmt::format("{} x {} samples", s.afm_width, s.afm_height));
   print_line("SEM", fmt::format("{} x {} pixels of {} primaries, in {:.3g} s", job.width,
                                 job.height, job.electrons, s.seconds));
-  std::string label = "written";
-  for (const auto& file : s.written) {
-    print_line(label, file.string());
-    label.clear();
-  }
+  print_written(s.written);
   return 0;
 }
 

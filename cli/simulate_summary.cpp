@@ -152,11 +152,7 @@ void print_summary(int threads, const workflow::SimulateSummary& s) {
     print_line("triangles", fmt::format("{} that electrons can reach; {} left out",
                                         format_count(double(s.scene.triangles)),
                                         format_count(double(s.scene.triangles_left_out))));
-  std::string label = "written";
-  for (const auto& path : s.written) {
-    print_line(label, path.string());
-    label.clear();
-  }
+  print_written(s.written);
 }
 
 }  // namespace surf::cli

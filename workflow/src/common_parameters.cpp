@@ -18,6 +18,19 @@ void describe_threads(ParameterVisitor& visit, int& threads) {
   threads = execution.threads;
 }
 
+void describe_images(ParameterVisitor& visit, std::vector<std::filesystem::path>& outputs,
+                     const char* help) {
+  visit.form(
+      {.name = "output",
+       .help = help,
+       .form = "FILE",
+       .recorded = false,
+       .file = FileRole::written},
+      [&] { return outputs.empty() ? std::string() : outputs.front().string(); },
+      [&](std::string_view text, const std::string&) { outputs.emplace_back(text); },
+      FieldKind::list);
+}
+
 void describe_folder(ParameterVisitor& visit, std::filesystem::path& folder, const char* help) {
   visit.form(
       {.name = "output",

@@ -18,6 +18,10 @@ void describe_threads(ParameterVisitor& visit, int& threads);
 /// The parameter "output", a folder; "result/" is stored as "result".
 void describe_folder(ParameterVisitor& visit, std::filesystem::path& folder, const char* help);
 
+/// The parameter "output": image files, one for each time that it is given.
+void describe_images(ParameterVisitor& visit, std::vector<std::filesystem::path>& outputs,
+                     const char* help);
+
 /// A file or a folder.
 void describe_path(ParameterVisitor& visit, std::filesystem::path& path, const Parameter& about);
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 
 #include "common_parameters.h"
 #include "guided/guide_model.h"
@@ -23,6 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr float most_counts = 1e15f;
 constexpr const char* endings[] = {".sum", ".squares", ".odd_sum", ".odd_squares"};
 
 /// Names of the detectors whose counts an image has.
@@ -37,27 +39,23 @@ std::vector<std::string> detectors_of(const Image& image) {
   return names;
 }
 
-CountImage counts_of(const Image& image, const std::string& detector) {
-  const auto plane = [&](const std::string& name) -> const Grid<float>& {
-    return image.find(name)->values;
+/// Counts of a detector, pixel by pixel. Refers to `image`.
+std::function<PixelCounts(int x, int y)> counts_of(const Image& image,
+                                                   const std::string& detector) {
+  const auto whole = [&image](const std::string& name) {
+    const Grid<float>& values = image.find(name)->values;
+    for (const float value : values.data())
+      if (!(value >= 0 && value <= most_counts))
+        throw InvalidInput("channel " + name, fmt::format("a pixel is {}", value),
+                           "Counts are whole numbers from 0 on, as 'semsurf simulate' writes them");
+    return [&values](int x, int y) { return static_cast<std::int64_t>(values(x, y)); };
   };
-  const Grid<float>&electrons = plane("electrons"), &sum = plane(detector + ".sum"),
-        &squares = plane(detector + ".squares"), &odd_sum = plane(detector + ".odd_sum"),
-        &odd_squares = plane(detector + ".odd_squares");
-  CountImage counts;
-  for (CountHalf& half : counts)
-    for (auto* to : {&half.primaries, &half.sum, &half.squares})
-      *to = Grid<double>(image.width(), image.height(), 0.0);
-  for (std::size_t i = 0; i < electrons.size(); ++i) {
-    const double n = electrons.data()[i], odd = std::floor(n / 2);
-    counts[0].primaries.data()[i] = n - odd;
-    counts[0].sum.data()[i] = double(sum.data()[i]) - odd_sum.data()[i];
-    counts[0].squares.data()[i] = double(squares.data()[i]) - odd_squares.data()[i];
-    counts[1].primaries.data()[i] = odd;
-    counts[1].sum.data()[i] = odd_sum.data()[i];
-    counts[1].squares.data()[i] = odd_squares.data()[i];
-  }
-  return counts;
+  return [electrons = whole("electrons"), sum = whole(detector + ".sum"),
+          squares = whole(detector + ".squares"), odd_sum = whole(detector + ".odd_sum"),
+          odd_squares = whole(detector + ".odd_squares")](int x, int y) {
+    return PixelCounts{
+        electrons(x, y), {sum(x, y), squares(x, y)}, {odd_sum(x, y), odd_squares(x, y)}};
+  };
 }
 
 double number_in(const Image& image, const std::string& key, double otherwise) {
@@ -70,15 +68,10 @@ double number_in(const Image& image, const std::string& key, double otherwise) {
 
 /// Of a detector, as the image's record describes it; 1 where it does not.
 double efficiency_of(const Image& image, const std::string& detector) {
-  constexpr std::string_view key = "efficiency=";
-  for (const auto& [name, text] : image.metadata) {
-    if (!name.starts_with("detector.") || !text.starts_with(detector)) continue;
-    if (text.size() > detector.size() && text[detector.size()] != ':') continue;
-    const auto at = text.find(key);
-    if (at == std::string::npos) return 1;
-    const double value = std::strtod(text.c_str() + at + key.size(), nullptr);
-    return value > 0 && value <= 1 ? value : 1;
-  }
+  for (const auto& [name, text] : image.metadata)
+    if (name.starts_with("detector."))
+      for (const mc::Detector& described : mc::parse_detectors(text, "metadata " + name))
+        if (described.name == detector) return described.efficiency;
   return 1;
 }
 
@@ -102,9 +95,10 @@ Image view_of(const Image& image) {
 SceneGuides guides_in(const Image& image, const EstimateJob& job, const Watch& watch) {
   SceneGuides guides;
   mc::Beam beam;
-  beam.tilt_deg = std::clamp(number_in(image, "beam.tilt_deg", 0), 0.0, 89.9);
+  beam.tilt_deg = number_in(image, "beam.tilt_deg", 0);
   beam.azimuth_deg = number_in(image, "beam.azimuth_deg", 0);
-  beam.spot_nm = std::max(0.0, number_in(image, "beam.spot_nm", 0));
+  beam.spot_nm = number_in(image, "beam.spot_nm", 0);
+  mc::validate(beam);
   if (shows_surface(image)) {
     const SeenSurface surface = seen_surface(view_of(image), beam, guides.region);
     guides.shape = shape_guides(surface, job.threads, watch);
@@ -114,8 +108,9 @@ SceneGuides guides_in(const Image& image, const EstimateJob& job, const Watch& w
       guides.predicted = predicted_guides(model, surface, job.threads, watch);
     }
   } else if (!job.model.empty()) {
-    throw UsageError("`estimate.model`", "the image has no heights that it could predict from",
-                     "Simulate with `output.channels=counts,electrons,z_nm,normal,material`");
+    throw UsageError(
+        "`estimate.model`", "the image has no heights that it could predict from",
+        "Make it by 'semsurf simulate --channels counts,electrons,z_nm,normal,material'");
   } else if (const Channel* const valid = image.find("valid")) {
     guides.region = Grid<int>(image.width(), image.height(), 0);
     for (std::size_t i = 0; i < guides.region.size(); ++i)
@@ -138,19 +133,6 @@ Channel& channel_of(Image& image, const std::string& name) {
     if (channel.name == name) return channel;
   image.channels.push_back({name, "1", Grid<float>(image.width(), image.height(), 0.0f)});
   return image.channels.back();
-}
-
-Grid<double> plain_errors(const CountImage& counts) {
-  Grid<double> errors = counts[0].sum;
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    const auto both = [&](Grid<double> CountHalf::*plane) {
-      return (counts[0].*plane).data()[i] + (counts[1].*plane).data()[i];
-    };
-    const double n = both(&CountHalf::primaries), mean = both(&CountHalf::sum) / std::max(n, 1.0);
-    errors.data()[i] =
-        n > 1 ? std::sqrt(std::max(0.0, both(&CountHalf::squares) / n - mean * mean) / (n - 1)) : 0;
-  }
-  return errors;
 }
 
 void check_outputs(const EstimateJob& job, const Image& like) {
@@ -178,15 +160,7 @@ void describe(ParameterVisitor& visit, EstimateJob& job) {
                          "image must have z_nm and normal",
                  .otherwise = "none",
                  .file = FileRole::read});
-  visit.form(
-      {.name = "output",
-       .help = "Image to write: EXR, TIFF, PNG, VTI",
-       .form = "FILE",
-       .recorded = false,
-       .file = FileRole::written},
-      [&] { return job.outputs.empty() ? std::string() : job.outputs.front().string(); },
-      [&](std::string_view text, const std::string&) { job.outputs.emplace_back(text); },
-      FieldKind::list);
+  describe_images(visit, job.outputs, "Image to write: EXR, TIFF, PNG, VTI");
   visit(job.png_channel, {.name = "output.png_channel",
                           .help = "Channel that PNG files show",
                           .otherwise = "the first",
@@ -202,11 +176,11 @@ EstimateSummary run(const EstimateJob& job, const Reporter& reporter) {
   const std::string subject = job.input.empty() ? "IMAGE" : job.input.string();
   summary.detectors = detectors_of(image);
   if (summary.detectors.empty() || !image.find("electrons"))
-    throw InvalidInput(subject, "it has no counts to estimate from",
-                       "Simulate with `output.channels=counts,electrons,z_nm,normal,material`");
-  for (const std::string& name : summary.detectors)
-    channel_of(image, name), channel_of(image, name + ".stderr"),
-        channel_of(image, name + ".radius");
+    throw InvalidInput(
+        subject, "it has no counts to estimate from",
+        "Make it by 'semsurf simulate --channels counts,electrons,z_nm,normal,material'");
+  for (const std::string& name : summary.detectors)  // all channels before any of them is used
+    for (const char* ending : {"", ".stderr", ".radius"}) channel_of(image, name + ending);
   check_outputs(job, image);
   const SceneGuides guides = guides_in(image, job, watch);
   for (const Guide& guide : guides.predicted) summary.guides.push_back("predicted " + guide.name);
@@ -220,10 +194,10 @@ EstimateSummary run(const EstimateJob& job, const Reporter& reporter) {
   const auto record = step_record("estimate", record_of(said), inputs);
   for (std::size_t d = 0; d < summary.detectors.size(); ++d) {
     const std::string& name = summary.detectors[d];
-    const CountImage counts = counts_of(image, name);
+    const auto counts_at = counts_of(image, name);
     const double share = 1.0 / static_cast<double>(summary.detectors.size());
     const GuidedImage guided = estimate_guided(
-        counts, guides.of(name),
+        in_halves(image.width(), image.height(), counts_at), guides.of(name),
         {.region = guides.region,
          .library_cascades = std::max(0.0, cascades),
          .threads = job.threads,
@@ -238,7 +212,13 @@ EstimateSummary run(const EstimateJob& job, const Reporter& reporter) {
       mean.data()[i] = static_cast<float>(efficiency * guided.mean.data()[i]);
       error.data()[i] = static_cast<float>(efficiency * guided.error.data()[i]);
     }
-    summary.gains.push_back(gain_of(guided, plain_errors(counts)));
+    Grid<double> plain_error(image.width(), image.height());
+    for (int y = 0; y < image.height(); ++y)
+      for (int x = 0; x < image.width(); ++x) {
+        const PixelCounts counts = counts_at(x, y);
+        plain_error(x, y) = mc::estimate(counts.primaries, counts.all).standard_error;
+      }
+    summary.gains.push_back(gain_of(guided, plain_error));
   }
   for (const auto& [key, value] : record)
     if (key != "semsurf.version") image.metadata["estimate." + key] = value;

@@ -137,15 +137,7 @@ void describe(ParameterVisitor& visit, PredictJob& job) {
                   .limits = within(0, mc::largest_length_nm),
                   .otherwise = "as the model says"});
   job.wanted.spot_nm = spot_nm.value_or(0);
-  visit.form(
-      {.name = "output",
-       .help = "Image to write: EXR, TIFF, PNG, VTI",
-       .form = "FILE",
-       .recorded = false,
-       .file = FileRole::written},
-      [&] { return job.outputs.empty() ? std::string() : job.outputs.front().string(); },
-      [&](std::string_view text, const std::string&) { job.outputs.emplace_back(text); },
-      FieldKind::list);
+  describe_images(visit, job.outputs, "Image to write: EXR, TIFF, PNG, VTI");
   visit(job.png_channel, {.name = "output.png_channel",
                           .help = "Channel that PNG files show",
                           .otherwise = "the model's first channel",

@@ -165,10 +165,15 @@ void keep_interrupted(const ResolvedJob& job, Checkpoint* checkpoint, const Note
   }
 }
 
-ImageRows labelled_image(const ResolvedJob& job, const mc::Scene& scene,
-                         const SimulateSummary& summary) {
+ImageRows rows_of(const SimulateSummary& summary) {
   ImageRows image = mc::make_image_rows(summary.result, summary.scan);
   if (!summary.guided.empty()) show_guided(summary.result, summary.guided, image);
+  return image;
+}
+
+ImageRows labelled_image(const ResolvedJob& job, const mc::Scene& scene,
+                         const SimulateSummary& summary) {
+  ImageRows image = rows_of(summary);
   add_channels(scene, job, summary.result, summary.guided, image);
   for (const auto& [key, value] : summary.record) image.head.metadata[key] = value;
   return image;
@@ -195,11 +200,7 @@ void write_all(const ResolvedJob& job, const ImageRows& image, SimulateSummary& 
 
 }  // namespace
 
-Image image_of(const SimulateSummary& summary) {
-  ImageRows image = mc::make_image_rows(summary.result, summary.scan);
-  if (!summary.guided.empty()) show_guided(summary.result, summary.guided, image);
-  return to_image(image);
-}
+Image image_of(const SimulateSummary& summary) { return to_image(rows_of(summary)); }
 
 SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
                     const Simulator& given) {

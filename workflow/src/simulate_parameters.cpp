@@ -97,15 +97,7 @@ void describe(ParameterVisitor& visit, SimulateJob& job) {
          .help = "Layout of EXR and TIFF: rows, or tiles with smaller sizes for viewing",
          .otherwise = "auto: tiles above 64 million pixels",
          .level = Level::advanced});
-  visit.form(
-      {.name = "output",
-       .help = "Image to write: .exr .tif .png .vti",
-       .form = "FILE",
-       .recorded = false,
-       .file = FileRole::written},
-      [&] { return job.outputs.empty() ? std::string() : job.outputs.front().string(); },
-      [&](std::string_view text, const std::string&) { job.outputs.emplace_back(text); },
-      FieldKind::list);
+  describe_images(visit, job.outputs, "Image to write: .exr .tif .png .vti");
   describe(visit, job.checkpoint);
 }
 

@@ -10,29 +10,26 @@ namespace {
 
 constexpr double least_yield_share = 0.05;  // of the mean: darker pixels do not count for more
 
-CountImage halves_of(const mc::SimulationResult& r, std::size_t d) {
-  CountImage counts;
-  const int width = r.pixels.width(), height = r.pixels.height();
-  for (CountHalf& half : counts)
+}  // namespace
+
+CountImage in_halves(int width, int height,
+                     const std::function<PixelCounts(int x, int y)>& counts_at) {
+  CountImage halves;
+  for (CountHalf& half : halves)
     for (auto* plane : {&half.primaries, &half.sum, &half.squares})
       *plane = Grid<double>(width, height, 0.0);
-  for (int y = 0; y < height; ++y) {
+  for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
-      const std::int64_t n = r.pixels(x, y).primaries;
-      const mc::Counts &all = r.counts[d](x, y), &odd = r.odd_counts[d](x, y);
-      counts[0].primaries(x, y) = static_cast<double>(n - n / 2);
-      counts[0].sum(x, y) = static_cast<double>(all.sum - odd.sum);
-      counts[0].squares(x, y) = static_cast<double>(all.squares - odd.squares);
-      counts[1].primaries(x, y) = static_cast<double>(n / 2);
-      counts[1].sum(x, y) = static_cast<double>(odd.sum);
-      counts[1].squares(x, y) = static_cast<double>(odd.squares);
+      const auto [n, all, odd] = counts_at(x, y);
+      halves[0].primaries(x, y) = static_cast<double>(n - n / 2);
+      halves[0].sum(x, y) = static_cast<double>(all.sum - odd.sum);
+      halves[0].squares(x, y) = static_cast<double>(all.squares - odd.squares);
+      halves[1].primaries(x, y) = static_cast<double>(n / 2);
+      halves[1].sum(x, y) = static_cast<double>(odd.sum);
+      halves[1].squares(x, y) = static_cast<double>(odd.squares);
     }
-    r.release();
-  }
-  return counts;
+  return halves;
 }
-
-}  // namespace
 
 std::vector<GuidedImage> estimate_images(const mc::SimulationResult& result,
                                          const SceneGuides& guides, int threads,
@@ -40,7 +37,13 @@ std::vector<GuidedImage> estimate_images(const mc::SimulationResult& result,
   std::vector<GuidedImage> images;
   for (std::size_t d = 0; d < result.detectors.size(); ++d)
     images.push_back(estimate_guided(
-        halves_of(result, d), guides.of(result.detectors[d].name),
+        in_halves(result.pixels.width(), result.pixels.height(),
+                  [&](int x, int y) {
+                    if (x == 0) result.release();
+                    return PixelCounts{result.pixels(x, y).primaries, result.counts[d](x, y),
+                                       result.odd_counts[d](x, y)};
+                  }),
+        guides.of(result.detectors[d].name),
         {.region = guides.region,
          .library_cascades = static_cast<double>(result.library_cascades),
          .threads = threads,
@@ -80,25 +83,28 @@ std::vector<GuidedGain> gains_of(const mc::SimulationResult& result,
 
 void show_guided(const mc::SimulationResult& result, const std::vector<GuidedImage>& images,
                  ImageRows& image) {
-  std::vector<std::pair<const GuidedImage*, double>> shown(image.head.channels.size(),
-                                                           {nullptr, 1.0});
-  std::vector<const Grid<double>*> planes(image.head.channels.size(), nullptr);
-  for (std::size_t c = 0; c < planes.size(); ++c)
+  struct Shown {
+    const Grid<double>* values = nullptr;  // null: the channel stays as it is
+    const Grid<double>* radius_px = nullptr;
+    double efficiency = 1;
+  };
+  std::vector<Shown> shown(image.head.channels.size());
+  for (std::size_t c = 0; c < shown.size(); ++c)
     for (std::size_t d = 0; d < images.size(); ++d) {
       const std::string &name = image.head.channels[c].name, &own = result.detectors[d].name;
       if (name != own && name != own + ".stderr") continue;
-      planes[c] = name == own ? &images[d].mean : &images[d].error;
-      shown[c] = {&images[d], result.detectors[d].efficiency};
+      shown[c] = {name == own ? &images[d].mean : &images[d].error, &images[d].radius_px,
+                  result.detectors[d].efficiency};
     }
-  image.read = [plain = std::move(image.read), planes = std::move(planes),
-                shown = std::move(shown)](std::size_t channel, int y, std::span<float> row) {
+  image.read = [plain = std::move(image.read), shown = std::move(shown)](std::size_t channel, int y,
+                                                                         std::span<float> row) {
     plain(channel, y, row);
-    if (!planes[channel]) return;
-    const auto& [estimate, efficiency] = shown[channel];
+    const Shown& guided = shown[channel];
+    if (!guided.values) return;
     for (int x = 0; x < static_cast<int>(row.size()); ++x)
-      if (estimate->radius_px(x, y) > 0)
+      if ((*guided.radius_px)(x, y) > 0)
         row[static_cast<std::size_t>(x)] =
-            static_cast<float>((*planes[channel])(x, y) * efficiency);
+            static_cast<float>((*guided.values)(x, y) * guided.efficiency);
   };
 }
 

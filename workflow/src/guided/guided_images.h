@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "guided/scene_guides.h"
@@ -10,6 +12,14 @@
 #include "surf/workflow/simulate_job.h"
 
 namespace surf::workflow {
+
+/// What is known of the primaries of one pixel: those of odd number are the second half.
+struct PixelCounts {
+  std::int64_t primaries = 0;
+  mc::Counts all, odd;
+};
+CountImage in_halves(int width, int height,
+                     const std::function<PixelCounts(int x, int y)>& counts_at);
 
 /// Estimates each detector's image from a result with `odd_counts`. Values are before the
 /// detector's efficiency.

@@ -18,6 +18,10 @@
 namespace surf::workflow {
 namespace {
 
+// Of each pixel before anything is known of it: 16 in either half.
+constexpr std::int64_t first_round_electrons = 32;
+// Fewer, on average, say too little of their own scatter.
+constexpr double fewest_guided_electrons = 8;
 constexpr std::int64_t most_pixels = std::int64_t{1} << 24;  // all planes are in memory together
 constexpr std::int64_t cascade_run = 32;  // electrons are added in runs of cascades
 // Electrons of a pixel times the square of the error that they leave, in scenes of all kinds.

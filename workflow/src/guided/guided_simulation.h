@@ -13,11 +13,6 @@
 
 namespace surf::workflow {
 
-/// Electrons of each pixel before anything is known of it: 16 in either half.
-inline constexpr std::int64_t first_round_electrons = 32;
-/// Fewer electrons than this, on average, say too little of their own scatter.
-inline constexpr double fewest_guided_electrons = 8;
-
 /// Settles whether an image is guided: `automatic` is where that pays, which it does not for few
 /// pixels, nor for very few or very many electrons. Throws UsageError for what cannot be guided.
 void settle_estimate(EstimateOptions& estimate, const mc::SimulationOptions& options,

@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "guided/scene_guides.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "surf/core/error.h"
 #include "surf/core/image_rows.h"
 #include "surf/mc/geometry/surface_view.h"
 #include "surf/sem/shape_guides.h"
 
 namespace surf::workflow {
+namespace {
+
+constexpr float most_materials = 10'000;
+
+}  // namespace
 
 std::vector<Guide> SceneGuides::of(const std::string& detector) const {
   std::vector<Guide> guides;
@@ -42,7 +50,11 @@ SeenSurface seen_surface(const Image& view, const mc::Beam& beam, Grid<int>& reg
     surface.height_nm.data()[i] = z.data()[i] / -along.z;
     surface.cosine.data()[i] =
         -(nx.data()[i] * along.x + ny.data()[i] * along.y + nz.data()[i] * along.z);
-    region.data()[i] = static_cast<int>(std::lround(material.data()[i]));
+    const float number = material.data()[i];
+    if (!(number >= 0 && number <= most_materials))
+      throw InvalidInput("channel material", fmt::format("a pixel is {}", number),
+                         "Give the numbers of materials, from 1 on");
+    region.data()[i] = static_cast<int>(std::lround(number));
   }
   return surface;
 }

@@ -48,9 +48,6 @@ struct GuidedImage {
   /// shares its error with its neighbours.
   Grid<double> radius_px;
   double noise_scale = 1;  ///< variance between the halves over that of the primaries' scatter
-  /// Mean over the pixels of the variance of plain counts over the square of the error: how many
-  /// times as many primaries plain counts would take for the same.
-  double gain = 1;
 };
 
 /// Estimates yields by local linear regression of the counts on guides. Windows of several widths

@@ -310,7 +310,7 @@ ErrorsAround errors_around(const GuidedRegion& r, const GuidedPlanes& planes,
 }
 
 void put(const GuidedRegion& r, const GuidedPlanes& planes, double library_cascades,
-         GuidedImage& out, double& gains, double& pixels) {
+         GuidedImage& out) {
   const ErrorModel model = fit_errors(r, planes);
   const ErrorsAround around = errors_around(r, planes, model);
   for (std::size_t i = 0; i < around.ratio.size(); ++i) {
@@ -329,8 +329,6 @@ void put(const GuidedRegion& r, const GuidedPlanes& planes, double library_casca
     }
     if (variance > 0)
       out.radius_px.data()[i] = std::sqrt(std::max(1.0, noise / variance) * std::numbers::inv_pi);
-    if (square > 0) gains += noise / square;
-    pixels += 1;
     if (library_cascades > 0) square += r.variance.of_one(value) / library_cascades;
     out.mean.data()[i] = value;
     out.error.data()[i] = std::sqrt(square);
@@ -363,7 +361,7 @@ GuidedImage estimate_guided(const CountImage& counts, const std::vector<Guide>& 
     for (int x = 0; x < width; x += tile_px)
       tiles.push_back({x, y, std::min(x + tile_px, width), std::min(y + tile_px, height)});
   const std::set<int> numbers = numbers_of(options.region);
-  double gains = 0, pixels = 0, scales = 0, done = 0;
+  double pixels = 0, scales = 0, done = 0;
   const double all = static_cast<double>(numbers.size() * tiles.size());
   for (const int number : numbers) {
     GuidedRegion r;
@@ -397,14 +395,12 @@ GuidedImage estimate_guided(const CountImage& counts, const std::vector<Guide>& 
       options.watch.report(done++, all);
       estimate_tile(r, tile, options.threads, planes);
     }
-    put(r, planes, options.library_cascades, out, gains, pixels);
+    put(r, planes, options.library_cascades, out);
+    pixels += here;
     scales += here * r.variance.noise_scale;
   }
   options.watch.report(all, all);
-  if (pixels > 0) {
-    out.gain = gains / pixels;
-    out.noise_scale = scales / pixels;
-  }
+  if (pixels > 0) out.noise_scale = scales / pixels;
   return out;
 }
 

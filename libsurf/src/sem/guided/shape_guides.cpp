@@ -8,7 +8,6 @@
 #include <numbers>
 #include <utility>
 
-#include "gaussian_window.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
 
@@ -37,6 +36,14 @@ void check(const SeenSurface& s) {
     throw InvalidInput("seen surface", "its pixels have no size", "Give a pixel size above zero");
 }
 
+/// 1 where something is seen, else 0.
+Grid<double> weights_of(const SeenSurface& s) {
+  Grid<double> weights(s.seen.width(), s.seen.height());
+  std::ranges::transform(s.seen.data(), weights.data().begin(),
+                         [](std::uint8_t seen) { return seen ? 1.0 : 0.0; });
+  return weights;
+}
+
 Guide tilted_path(const SeenSurface& s) {
   Guide guide{"tilt", s.cosine};
   for (std::size_t i = 0; i < guide.values.size(); ++i)
@@ -49,17 +56,11 @@ Guide tilted_path(const SeenSurface& s) {
 Guide relative_height(const SeenSurface& s, double nm, double pixels) {
   const double pixel_nm = std::sqrt(s.pixel_x_nm * s.pixel_y_nm);
   const double distance_nm = std::max(nm, pixels * pixel_nm);
-  const guided::GaussianWindow window(distance_nm / pixel_nm);
-  std::vector<double> heights(s.seen.size(), 0.0), seen = heights, scratch;
-  for (std::size_t i = 0; i < seen.size(); ++i)
-    if (s.seen.data()[i]) heights[i] = s.height_nm.data()[i], seen[i] = 1;
-  window.sum(heights, s.seen.width(), s.seen.height(), scratch);
-  window.sum(seen, s.seen.width(), s.seen.height(), scratch);
+  const Grid<double> around = mean_around(s.height_nm, weights_of(s), distance_nm / pixel_nm);
   Guide guide{"height", Grid<double>(s.seen.width(), s.seen.height(), 0.0)};
-  for (std::size_t i = 0; i < seen.size(); ++i)
+  for (std::size_t i = 0; i < around.size(); ++i)
     if (s.seen.data()[i])
-      guide.values.data()[i] =
-          std::tanh((s.height_nm.data()[i] - heights[i] / seen[i]) / distance_nm);
+      guide.values.data()[i] = std::tanh((s.height_nm.data()[i] - around.data()[i]) / distance_nm);
   return guide;
 }
 
@@ -147,15 +148,6 @@ Guide step_nearness(const SeenSurface& s, bool above) {
   return guide;
 }
 
-void blur(const SeenSurface& s, const guided::GaussianWindow& window, Guide& guide) {
-  std::vector<double> seen(s.seen.size(), 0.0), scratch;
-  for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = s.seen.data()[i] ? 1 : 0;
-  window.sum(seen, s.seen.width(), s.seen.height(), scratch);
-  window.sum(guide.values.data(), s.seen.width(), s.seen.height(), scratch);
-  for (std::size_t i = 0; i < seen.size(); ++i)
-    guide.values.data()[i] = s.seen.data()[i] ? guide.values.data()[i] / seen[i] : 0;
-}
-
 }  // namespace
 
 std::vector<Guide> shape_guides(const SeenSurface& surface, int threads, const Watch& watch) {
@@ -171,7 +163,11 @@ std::vector<Guide> shape_guides(const SeenSurface& surface, int threads, const W
   guides.push_back(step_nearness(surface, false));
   const double spot_px = surface.spot_nm / std::sqrt(surface.pixel_x_nm * surface.pixel_y_nm);
   if (spot_px > least_spot_px)
-    for (Guide& guide : guides) blur(surface, guided::GaussianWindow(spot_px), guide);
+    for (Guide& guide : guides) {
+      guide.values = mean_around(guide.values, weights_of(surface), spot_px);
+      for (std::size_t i = 0; i < guide.values.size(); ++i)
+        if (!surface.seen.data()[i]) guide.values.data()[i] = 0;
+    }
   return guides;
 }
 
