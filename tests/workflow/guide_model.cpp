@@ -73,6 +73,19 @@ TEST_F(GuideModelTest, IsKeptForTheSceneOrThereIsNone) {
   EXPECT_FALSE(find_guide_model(usual, scene(3, 0, "Au"), cache_).model);
 }
 
+TEST_F(GuideModelTest, IsTrainedWhereThatPays) {
+  const EstimateOptions usual;
+  const double few = 1e6, many = 1e9;
+  EXPECT_TRUE(trains_guide_model(usual, scene(3), cache_, many));
+  EXPECT_FALSE(trains_guide_model(usual, scene(3), cache_, few));
+  EXPECT_FALSE(trains_guide_model(usual, scene(3), {}, many));
+  EXPECT_FALSE(trains_guide_model(usual, scene(3, 30), cache_, many));
+  EXPECT_FALSE(trains_guide_model(usual, scene(0.1), cache_, many));
+  EXPECT_FALSE(trains_guide_model({Estimate::guided, "off"}, scene(3), cache_, many));
+  keep();
+  EXPECT_FALSE(trains_guide_model(usual, scene(3), cache_, many));
+}
+
 TEST_F(GuideModelTest, PredictsWhatTheSceneShows) {
   const GuideModel model = find_guide_model({Estimate::guided, file_.string()}, scene(3), {});
   const SceneGuides guides = guides_of(scene(3), model, 1, {});

@@ -9,6 +9,7 @@
 
 #include "disk_needs.h"
 #include "extras.h"
+#include "guided/guide_model.h"
 #include "guided/guided_simulation.h"
 #include "job_libraries.h"
 #include "simulation_setup.h"
@@ -28,6 +29,9 @@ double kilobytes_of(const char* file, const std::string& key) {
     if (line.compare(0, key.size(), key) == 0) return 1024 * std::stod(line.substr(key.size()));
   return 0;
 }
+
+// Of the counts, guides, fits and images of two detectors.
+constexpr double guided_bytes_per_pixel = 700;
 
 // The memory besides scene and libraries.
 std::vector<MemoryNeed> memory_of_results(const ResolvedJob& job, const mc::Scan& scan) {
@@ -53,6 +57,8 @@ std::vector<MemoryNeed> memory_of_results(const ResolvedJob& job, const mc::Scan
   if (!job.extras.channels.empty())
     writing += std::min(limit, 4 * static_cast<double>(extra_channels(job).size()) * pixels);
   needs.push_back({"writing", writing});
+  if (job.estimate.kind == Estimate::guided)
+    needs.push_back({"guided images", guided_bytes_per_pixel * pixels});
   return needs;
 }
 
@@ -76,6 +82,12 @@ DryRun dry_run(SimulateJob asked, int ranks, double seconds, const Reporter& rep
   out.warnings = warn_before(job, facts, out.scan);
   if (double fit = 1e6; job.estimate.kind == Estimate::guided) {
     job.options = expected_options(scene, job.options, fit);
+    const double primaries = mc::mean_electrons_of(job.options.budget) * out.scan.width *
+                             static_cast<double>(out.scan.height);
+    if (job.seconds() == 0 && trains_guide_model(job.estimate, scene, job.cache, primaries))
+      out.warnings.push_back(
+          "a fast model is trained before, which takes minutes more; "
+          "`simulation.guide_model=off` does without");
     job.options.odd_counts = true;
   }
   out.choice =

@@ -92,7 +92,8 @@ Image view_of(const Image& image) {
   return view;
 }
 
-SceneGuides guides_in(const Image& image, const EstimateJob& job, const Watch& watch) {
+SceneGuides guides_in(const Image& image, const EstimateJob& job,
+                      const std::vector<std::string>& detectors, const Watch& watch) {
   SceneGuides guides;
   mc::Beam beam;
   beam.tilt_deg = number_in(image, "beam.tilt_deg", 0);
@@ -121,6 +122,10 @@ SceneGuides guides_in(const Image& image, const EstimateJob& job, const Watch& w
     if (!channel)
       throw UsageError("`estimate.guides`", fmt::format("the image has no channel '{}'", name),
                        "'semsurf info IMAGE' lists its channels");
+    if (std::ranges::count(detectors, name) > 0) {
+      guides.detectors.push_back(name);
+      continue;
+    }
     Guide guide{name, Grid<double>(image.width(), image.height(), 0.0)};
     std::ranges::copy(channel->values.data(), guide.values.data().begin());
     guides.shape.push_back(std::move(guide));
@@ -150,10 +155,12 @@ void check_outputs(const EstimateJob& job, const Image& like) {
 }  // namespace
 
 void describe(ParameterVisitor& visit, EstimateJob& job) {
-  describe_names(visit, job.guides,
-                 {.name = "estimate.guides",
-                  .help = "More channels of the image that guide, such as those of other detectors",
-                  .otherwise = "none"});
+  describe_names(
+      visit, job.guides,
+      {.name = "estimate.guides",
+       .help = "More channels of the image that guide, or detectors whose images guide those "
+               "of the others, each half of the electrons by the other",
+       .otherwise = "none"});
   describe_path(visit, job.model,
                 {.name = "estimate.model",
                  .help = "Fast model whose prediction guides, as 'semsurf train' writes it; the "
@@ -182,9 +189,10 @@ EstimateSummary run(const EstimateJob& job, const Reporter& reporter) {
   for (const std::string& name : summary.detectors)  // all channels before any of them is used
     for (const char* ending : {"", ".stderr", ".radius"}) channel_of(image, name + ending);
   check_outputs(job, image);
-  const SceneGuides guides = guides_in(image, job, watch);
+  const SceneGuides guides = guides_in(image, job, summary.detectors, watch.part(0, 0.1));
   for (const Guide& guide : guides.predicted) summary.guides.push_back("predicted " + guide.name);
   for (const Guide& guide : guides.shape) summary.guides.push_back(guide.name);
+  summary.guides.insert(summary.guides.end(), guides.detectors.begin(), guides.detectors.end());
   const double cascades = number_in(image, "library.cascades", 0);
   std::vector<fs::path> inputs;
   if (!job.input.empty()) inputs.push_back(job.input);
@@ -192,16 +200,20 @@ EstimateSummary run(const EstimateJob& job, const Reporter& reporter) {
   EstimateJob said;
   said.guides = job.guides;
   const auto record = step_record("estimate", record_of(said), inputs);
+  const std::vector<GuidedImage> images = estimate_detectors(
+      summary.detectors,
+      [&](std::size_t d) {
+        return in_halves(image.width(), image.height(), counts_of(image, summary.detectors[d]));
+      },
+      guides,
+      {.region = guides.region,
+       .library_cascades = std::max(0.0, cascades),
+       .threads = job.threads,
+       .watch = watch.part(0.1, 1)});
   for (std::size_t d = 0; d < summary.detectors.size(); ++d) {
     const std::string& name = summary.detectors[d];
     const auto counts_at = counts_of(image, name);
-    const double share = 1.0 / static_cast<double>(summary.detectors.size());
-    const GuidedImage guided = estimate_guided(
-        in_halves(image.width(), image.height(), counts_at), guides.of(name),
-        {.region = guides.region,
-         .library_cascades = std::max(0.0, cascades),
-         .threads = job.threads,
-         .watch = watch.part(share * static_cast<double>(d), share * static_cast<double>(d + 1))});
+    const GuidedImage& guided = images[d];
     const double efficiency = efficiency_of(image, name);
     Grid<float>&mean = channel_of(image, name).values,
     &error = channel_of(image, name + ".stderr").values,

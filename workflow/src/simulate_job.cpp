@@ -214,6 +214,7 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
   SimulateSummary summary;
   SpecimenFacts facts;
   std::optional<mc::Scene> ready;
+  double expected_primaries = 0;   // of a guided image
   double cascades_that_fit = 1e6;  // into memory; refined where libraries are of use
   const auto note = [&](std::vector<std::string> warnings) {
     for (std::string& warning : warnings) {
@@ -260,6 +261,9 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
     summary.choice =
         mc::choose_method(*ready, expected, job.scene.method, {job.extras.deposit_cells > 0});
     job.options.method = summary.choice.method;
+    if (job.seconds() == 0)  // else how many fit is not known yet
+      expected_primaries = mc::mean_electrons_of(expected.budget) * summary.scan.width *
+                           static_cast<double>(summary.scan.height);
   });
   const mc::Scene& scene = *ready;
   const io::SceneFile& s = job.scene;
@@ -268,7 +272,8 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
   SceneGuides guides;
   together(team, [&] {
     if (!guided || !leads(team)) return;
-    guide_model = find_guide_model(job.estimate, scene, job.cache);
+    guide_model = find_guide_model(job.estimate, scene, job.cache, expected_primaries,
+                                   job.options.threads, reporter);
     guides = guides_of(scene, guide_model, job.options.threads, reporter.watch());
   });
   JobLibraries kept(job.cache, reporter.counting("cascades"), tell);

@@ -12,13 +12,14 @@ void describe(ParameterVisitor& visit, EstimateOptions& options) {
                  "around it (guided): far fewer electrons for the same error; auto: guided where "
                  "that pays",
          .otherwise = "plain"});
-  visit(options.model,
-        {.name = "simulation.guide_model",
-         .help = "Fast model that guides: a file, auto for one of the cache that fits, or off",
-         .otherwise = "auto",
-         .form = "FILE|auto|off",
-         .level = Level::advanced,
-         .file = FileRole::read});
+  visit(options.model, {.name = "simulation.guide_model",
+                        .help = "Fast model that guides: a file, auto for one of the cache that "
+                                "fits, which is trained where "
+                                "that pays, or off",
+                        .otherwise = "auto",
+                        .form = "FILE|auto|off",
+                        .level = Level::advanced,
+                        .file = FileRole::read});
 }
 
 void describe(ParameterVisitor& visit, Extras& extras) {

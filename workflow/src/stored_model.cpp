@@ -103,6 +103,12 @@ std::string kept_name(const ModelRequest& r) {
                      r.pixel_nm, hash.substr(0, 16));
 }
 
+double training_primaries(const ModelRequest& r) {
+  const TrainJob job = training(r, {});
+  return static_cast<double>(job.surfaces.value_or(usual_training_surfaces)) * job.surface_px *
+         job.surface_px * static_cast<double>(r.electrons);
+}
+
 StoredModel find_model(const ModelRequest& r, const Reporter& reporter) {
   if (!r.file.empty()) return load(r.file, r);
   if (r.material.name.empty())

@@ -22,12 +22,10 @@
 namespace surf::workflow {
 namespace {
 
-constexpr int usual_surfaces = 60;
-
 /// The number of generated surfaces.
 int own_surfaces(const TrainJob& job, const Learner& learner) {
   if (!job.inputs.empty()) return 0;
-  return job.surfaces.value_or(learner.needs_images ? usual_surfaces : 0);
+  return job.surfaces.value_or(learner.needs_images ? usual_training_surfaces : 0);
 }
 
 void check_numbers(const TrainJob& job, int own) {

@@ -19,8 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double same_pixel = 1e-3;     // relative, as models demand
+constexpr double same_pixel = 1e-3;  // relative, as models demand
+// Of the pixels that training surfaces are designed for, nm.
+constexpr double finest_trained = 0.5, coarsest_trained = 10;
 constexpr double most_pixel_ratio = 4;  // beyond, a model says little about the pixels
+
+// How many times the electrons images take without a model: 1.3 times on rough ground, 1.05 to 1.1
+// times on plateaus and trenches (docs/development/guided_images.md).
+constexpr double usual_worth = 1.15;
 
 GuideModel none(std::string reason) { return {nullptr, "none", std::move(reason)}; }
 
@@ -29,16 +35,26 @@ GuideModel loaded(const fs::path& file, TrainedModel trained, const std::string&
           fmt::format("{} sha256 {}", file.filename().string(), io::sha256_of_file(file)), reason};
 }
 
-/// The model of the cache whose pixel is nearest to the scan's, among those that would be trained
-/// for this material, energy, spot and physics.
-std::optional<GuideModel> find_stored(const mc::Scene& scene, const fs::path& folder) {
+bool has_fast_models(const mc::Scene& scene) {
+  return scene.materials().size() == 1 && scene.beam().tilt_deg == 0 &&
+         scene.beam().working_distance_nm <= 0;
+}
+
+ModelRequest request_for(const mc::Scene& scene) {
   ModelRequest request;
   request.material = scene.materials().front();
   request.energy_ev = scene.beam().energy_ev;
   request.spot_nm = scene.beam().spot_nm;
   request.physics = scene.physics();
-  const double pixel_nm = std::sqrt(scene.scan().pixel_x_nm * scene.scan().pixel_y_nm);
-  request.pixel_nm = pixel_nm;
+  request.pixel_nm = std::sqrt(scene.scan().pixel_x_nm * scene.scan().pixel_y_nm);
+  return request;
+}
+
+/// The model of the cache whose pixel is nearest to the scan's, among those that would be trained
+/// for this material, energy, spot and physics.
+std::optional<GuideModel> find_stored(const mc::Scene& scene, const fs::path& folder) {
+  ModelRequest request = request_for(scene);
+  const double pixel_nm = request.pixel_nm;
   std::vector<fs::path> files;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error))
@@ -88,8 +104,18 @@ double interpolated(const Grid<double>& image, double x, double y) {
 
 }  // namespace
 
+bool trains_guide_model(const EstimateOptions& options, const mc::Scene& scene,
+                        const fs::path& cache, double primaries) {
+  const double pixel_nm = std::sqrt(scene.scan().pixel_x_nm * scene.scan().pixel_y_nm);
+  return options.model == "auto" && has_fast_models(scene) && !cache.empty() &&
+         pixel_nm >= finest_trained && pixel_nm <= coarsest_trained &&
+         primaries * (1 - 1 / usual_worth) > training_primaries(ModelRequest()) &&
+         !find_stored(scene, cache / "models");
+}
+
 GuideModel find_guide_model(const EstimateOptions& options, const mc::Scene& scene,
-                            const fs::path& cache) {
+                            const fs::path& cache, double primaries, int threads,
+                            const Reporter& reporter) {
   if (options.model == "off") return none("without a fast model, as asked");
   if (options.model != "auto") {
     const fs::path file = options.model;
@@ -101,6 +127,14 @@ GuideModel find_guide_model(const EstimateOptions& options, const mc::Scene& sce
     return none("by shape alone: fast models are of beams straight from above");
   if (cache.empty()) return none("by shape alone: there is no cache with fast models");
   if (auto stored = find_stored(scene, cache / "models")) return *std::move(stored);
+  if (trains_guide_model(options, scene, cache, primaries)) {
+    ModelRequest request = request_for(scene);
+    request.folder = cache / "models";
+    request.threads = threads;
+    StoredModel made = find_model(request, reporter);
+    return loaded(made.file, std::move(made.trained),
+                  fmt::format("by a model trained for it, {}", made.file.filename().string()));
+  }
   return none(fmt::format(
       "by shape alone: the cache has no fast model of {} at {:g} eV with pixels near {}",
       scene.materials().front().name, scene.beam().energy_ev,

@@ -12,6 +12,7 @@
 #include "surf/sem/image_model.h"
 #include "surf/sem/shape_guides.h"
 #include "surf/workflow/estimate_options.h"
+#include "surf/workflow/reporter.h"
 
 namespace surf::workflow {
 
@@ -23,10 +24,17 @@ struct GuideModel {
 };
 
 /// The model that is asked for, or the best one of the cache: of the same material, energy, spot
-/// and physics, with the pixel nearest to the scan's. None where models do not hold: oblique beams
-/// and several materials. Throws FileError for a named file that cannot be read.
+/// and physics, with the pixel nearest to the scan's. If the cache has none, one is trained into it
+/// where `primaries` of the scene's simulation make that pay; 0: never. None where models do not
+/// hold: oblique beams and several materials. Throws FileError for a named file that cannot be
+/// read, Interrupted.
 GuideModel find_guide_model(const EstimateOptions& options, const mc::Scene& scene,
-                            const std::filesystem::path& cache);
+                            const std::filesystem::path& cache, double primaries = 0,
+                            int threads = 0, const Reporter& reporter = {});
+
+/// Whether `find_guide_model` would train a model.
+bool trains_guide_model(const EstimateOptions& options, const mc::Scene& scene,
+                        const std::filesystem::path& cache, double primaries);
 
 /// What the model predicts of the seen surface, as guides named after its channels. The surface is
 /// resampled to the model's pixels and the images back. Empty without a model.

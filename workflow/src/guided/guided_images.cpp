@@ -31,26 +31,53 @@ CountImage in_halves(int width, int height,
   return halves;
 }
 
+std::vector<GuidedImage> estimate_detectors(
+    const std::vector<std::string>& detectors,
+    const std::function<CountImage(std::size_t detector)>& counts_of, const SceneGuides& guides,
+    const GuidedOptions& options) {
+  const std::size_t count = detectors.size();
+  const std::size_t all = guides.detectors.empty() ? count : 2 * count;
+  std::size_t done = 0;
+  const auto estimate = [&](std::size_t d, const std::vector<Guide>& by) {
+    GuidedOptions own = options;
+    own.watch = options.watch.part(static_cast<double>(done) / static_cast<double>(all),
+                                   static_cast<double>(done + 1) / static_cast<double>(all));
+    ++done;
+    return estimate_guided(counts_of(d), by, own);
+  };
+  std::vector<GuidedImage> first;
+  for (std::size_t d = 0; d < count; ++d) first.push_back(estimate(d, guides.of(detectors[d])));
+  if (guides.detectors.empty()) return first;
+  std::vector<GuidedImage> images;
+  for (std::size_t d = 0; d < count; ++d) {
+    std::vector<Guide> by = guides.of(detectors[d]);
+    for (std::size_t other = 0; other < count; ++other)
+      if (other != d && std::ranges::count(guides.detectors, detectors[other]) > 0)
+        by.push_back({detectors[other], first[other].halves[1], false, first[other].halves[0]});
+    images.push_back(estimate(d, by));
+  }
+  return images;
+}
+
 std::vector<GuidedImage> estimate_images(const mc::SimulationResult& result,
                                          const SceneGuides& guides, int threads,
                                          const Watch& watch) {
-  std::vector<GuidedImage> images;
-  for (std::size_t d = 0; d < result.detectors.size(); ++d)
-    images.push_back(estimate_guided(
-        in_halves(result.pixels.width(), result.pixels.height(),
-                  [&](int x, int y) {
-                    if (x == 0) result.release();
-                    return PixelCounts{result.pixels(x, y).primaries, result.counts[d](x, y),
-                                       result.odd_counts[d](x, y)};
-                  }),
-        guides.of(result.detectors[d].name),
-        {.region = guides.region,
-         .library_cascades = static_cast<double>(result.library_cascades),
-         .threads = threads,
-         .watch = watch.part(
-             static_cast<double>(d) / static_cast<double>(result.detectors.size()),
-             static_cast<double>(d + 1) / static_cast<double>(result.detectors.size()))}));
-  return images;
+  std::vector<std::string> names;
+  for (const mc::Detector& detector : result.detectors) names.push_back(detector.name);
+  return estimate_detectors(
+      names,
+      [&](std::size_t d) {
+        return in_halves(result.pixels.width(), result.pixels.height(), [&](int x, int y) {
+          if (x == 0) result.release();
+          return PixelCounts{result.pixels(x, y).primaries, result.counts[d](x, y),
+                             result.odd_counts[d](x, y)};
+        });
+      },
+      guides,
+      {.region = guides.region,
+       .library_cascades = static_cast<double>(result.library_cascades),
+       .threads = threads,
+       .watch = watch});
 }
 
 GuidedGain gain_of(const GuidedImage& image, const Grid<double>& plain_error) {

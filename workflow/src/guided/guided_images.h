@@ -21,6 +21,13 @@ struct PixelCounts {
 CountImage in_halves(int width, int height,
                      const std::function<PixelCounts(int x, int y)>& counts_at);
 
+/// Estimates the image of each of several detectors of the same primaries. Detectors that guide the
+/// others are estimated without each other first.
+std::vector<GuidedImage> estimate_detectors(
+    const std::vector<std::string>& detectors,
+    const std::function<CountImage(std::size_t detector)>& counts_of, const SceneGuides& guides,
+    const GuidedOptions& options);
+
 /// Estimates each detector's image from a result with `odd_counts`. Values are before the
 /// detector's efficiency.
 std::vector<GuidedImage> estimate_images(const mc::SimulationResult& result,

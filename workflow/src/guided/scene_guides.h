@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "guided/guide_model.h"
@@ -14,7 +15,9 @@ namespace surf::workflow {
 struct SceneGuides {
   std::vector<Guide> shape;      ///< for all detectors
   std::vector<Guide> predicted;  ///< by a fast model, named after its channels
-  Grid<int> region;              ///< the material that a pixel shows; -1: the beam meets nothing
+  /// Detectors of the same primaries whose images guide those of the others.
+  std::vector<std::string> detectors;
+  Grid<int> region;  ///< the material that a pixel shows; -1: the beam meets nothing
 
   /// Those of a detector: the prediction of its own image, or, where there is none, those of the
   /// others as mere guides; then shape.

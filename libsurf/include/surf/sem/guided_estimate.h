@@ -27,6 +27,10 @@ struct Guide {
   std::string name;
   Grid<double> values;    ///< finite
   bool predicts = false;  ///< a prediction of the yield itself: it may also guide alone
+  /// Of a guide that is made of the same primaries' counts, as another detector's image: `values`
+  /// are of the second half and guide the first, these are of the first and guide the second, so
+  /// that no count guides itself. Empty: `values` guide both.
+  Grid<double> of_first = {};
 };
 
 struct GuidedOptions {
@@ -48,6 +52,7 @@ struct GuidedImage {
   /// shares its error with its neighbours.
   Grid<double> radius_px;
   double noise_scale = 1;  ///< variance between the halves over that of the primaries' scatter
+  std::array<Grid<double>, 2> halves;  ///< the same as `mean` by each half of the primaries
 };
 
 /// Estimates yields by local linear regression of the counts on guides. Windows of several widths

@@ -57,7 +57,10 @@ void check(const CountImage& counts, const std::vector<Guide>& guides, const Gri
   }
   if (guides.size() > most_guides)
     throw InvalidInput("guides", fmt::format("there are {}", guides.size()), "Give 15 or fewer");
-  for (const Guide& guide : guides) check_plane(guide.values, "guide " + guide.name, any);
+  for (const Guide& guide : guides) {
+    check_plane(guide.values, "guide " + guide.name, any);
+    if (!guide.of_first.empty()) check_plane(guide.of_first, "guide " + guide.name, any);
+  }
   if (!region.empty() && (region.width() != width || region.height() != height))
     throw InvalidInput("regions", "they have another size than the counts", "Give all of one size");
 }
@@ -70,23 +73,34 @@ std::set<int> numbers_of(const Grid<int>& region) {
   return numbers;
 }
 
-/// Guides over the pixels of a region, with mean 0 and variance 1; those that do not vary are left
-/// out.
-void set_guides(const std::vector<Guide>& guides, GuidedRegion& r) {
+/// A guide's values over the pixels of a region, on the scale that has mean 0 and variance 1 in
+/// `first`. Empty: they do not vary.
+std::vector<double> standardized(const RegionCounts& counts, const Grid<double>& values,
+                                 const Grid<double>& first) {
+  double n = 0, sum = 0, squares = 0;
+  for (std::size_t i = 0; i < counts.seen.size(); ++i)
+    if (counts.counts(i)) n += 1, sum += first.data()[i];
+  const double mean = sum / n;
+  for (std::size_t i = 0; i < counts.seen.size(); ++i)
+    if (counts.counts(i)) squares += std::pow(first.data()[i] - mean, 2);
+  const double deviation = std::sqrt(squares / n);
+  if (!(deviation > 1e-9 * std::abs(mean)) || !std::isfinite(deviation)) return {};
+  std::vector<double> out(counts.seen.size(), 0.0);
+  for (std::size_t i = 0; i < out.size(); ++i)
+    if (counts.counts(i)) out[i] = (values.data()[i] - mean) / deviation;
+  return out;
+}
+
+/// Guides that vary, of those that are made of counts or of the others.
+void add_guides(const std::vector<Guide>& guides, bool of_counts, GuidedRegion& r) {
   for (const Guide& guide : guides) {
-    double n = 0, sum = 0, squares = 0;
-    for (std::size_t i = 0; i < r.counts.seen.size(); ++i)
-      if (r.counts.counts(i)) n += 1, sum += guide.values.data()[i];
-    const double mean = sum / n;
-    for (std::size_t i = 0; i < r.counts.seen.size(); ++i)
-      if (r.counts.counts(i)) squares += std::pow(guide.values.data()[i] - mean, 2);
-    const double deviation = std::sqrt(squares / n);
-    if (!(deviation > 1e-9 * std::abs(mean)) || !std::isfinite(deviation)) continue;
-    std::vector<double> values(r.counts.seen.size(), 0.0);
-    for (std::size_t i = 0; i < values.size(); ++i)
-      if (r.counts.counts(i)) values[i] = (guide.values.data()[i] - mean) / deviation;
-    if (guide.predicts) r.predicting.push_back(static_cast<int>(r.guides.size()));
-    r.guides.push_back(std::move(values));
+    if (guide.of_first.empty() == of_counts) continue;
+    std::vector<double> values = standardized(r.counts, guide.values, guide.values);
+    if (values.empty()) continue;
+    if (guide.predicts) r.predicting.push_back(static_cast<int>(r.guides[0].size()));
+    r.guides[1].push_back(
+        guide.of_first.empty() ? values : standardized(r.counts, guide.of_first, guide.values));
+    r.guides[0].push_back(std::move(values));
   }
 }
 
@@ -96,7 +110,7 @@ void set_detail(GuidedRegion& r) {
   std::vector<double> bend(r.counts.seen.size(), 0.0), seen = bend, scratch;
   for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = r.counts.counts(i) ? 1 : 0;
   window.sum(seen, r.counts.width, r.counts.height, scratch);
-  for (const std::vector<double>& guide : r.guides) {
+  for (const std::vector<double>& guide : r.guides[0]) {
     std::vector<double> smooth = guide;
     window.sum(smooth, r.counts.width, r.counts.height, scratch);
     for (std::size_t i = 0; i < bend.size(); ++i)
@@ -213,7 +227,7 @@ double fit_bias(const GuidedRegion& r, const GuidedPlanes& planes, const ErrorMo
       product += risk * spread / doubt;
       square += spread * spread / doubt;
     }
-  const double expected = r.guides.empty() ? unguided_bias : usual_bias[detail_class],
+  const double expected = r.guides[0].empty() ? unguided_bias : usual_bias[detail_class],
                before = 1 / (expected * expected);
   return std::max(0.0, (product + before * expected) / (square + before));
 }
@@ -331,6 +345,7 @@ void put(const GuidedRegion& r, const GuidedPlanes& planes, double library_casca
       out.radius_px.data()[i] = std::sqrt(std::max(1.0, noise / variance) * std::numbers::inv_pi);
     if (library_cascades > 0) square += r.variance.of_one(value) / library_cascades;
     out.mean.data()[i] = value;
+    for (std::size_t h = 0; h < 2; ++h) out.halves[h].data()[i] = planes.halves[h].value[i];
     out.error.data()[i] = std::sqrt(square);
   }
 }
@@ -354,7 +369,7 @@ GuidedImage estimate_guided(const CountImage& counts, const std::vector<Guide>& 
   check(counts, guides, options.region);
   const int width = counts[0].primaries.width(), height = counts[0].primaries.height();
   GuidedImage out;
-  for (auto* plane : {&out.mean, &out.error, &out.radius_px})
+  for (auto* plane : {&out.mean, &out.error, &out.radius_px, &out.halves[0], &out.halves[1]})
     *plane = Grid<double>(width, height, 0.0);
   std::vector<PixelRange> tiles;
   for (int y = 0; y < height; y += tile_px)
@@ -383,9 +398,10 @@ GuidedImage estimate_guided(const CountImage& counts, const std::vector<Guide>& 
       }
     }
     if (here == 0) continue;
-    set_guides(guides, r);
+    add_guides(guides, false, r);
     set_weights(r);
-    set_detail(r);
+    set_detail(r);  // by guides without noise
+    add_guides(guides, true, r);
     GuidedPlanes planes;
     planes.spread.assign(pilot.size(), 0.0);
     for (HalfPlanes& half : planes.halves)

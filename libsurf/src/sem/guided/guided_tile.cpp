@@ -50,6 +50,7 @@ Candidates candidates_of(const GuidedRegion& region, std::size_t half, const Pix
                          int threads) {
   const std::vector<double>& mean = region.counts.halves[half].mean;
   const std::vector<double>& noise = region.noise[half];
+  const std::vector<std::vector<double>>& guides = region.guides[half];
   const int width = region.counts.width, height = region.counts.height;
   Candidates out{range, {}};
   LocalFit plain{cut(mean, width, range), cut(noise, width, range), {}};
@@ -62,7 +63,7 @@ Candidates candidates_of(const GuidedRegion& region, std::size_t half, const Pix
         outer.width(), outer.height(), cut(mean, width, outer), cut(noise, width, outer), {}};
     for (double& p : data.precision) p = p > 0 ? 1 / p : 0;
     if (with_guides)
-      for (const std::vector<double>& guide : region.guides)
+      for (const std::vector<double>& guide : guides)
         data.guides.push_back(cut(guide, width, outer));
     const PixelRange wanted = within(range, outer);
     for (LocalFit& fit : fit_locally(data, sigma_px, wanted, sets, threads))
@@ -72,13 +73,13 @@ Candidates candidates_of(const GuidedRegion& region, std::size_t half, const Pix
   };
   for (const double sigma : plain_scales) add(sigma, false, {{}});
   std::vector<std::vector<int>> sets;
-  if (!region.predicting.empty() && region.predicting.size() < region.guides.size())
+  if (!region.predicting.empty() && region.predicting.size() < guides.size())
     sets.push_back(region.predicting);
-  std::vector<int> all(region.guides.size());
+  std::vector<int> all(guides.size());
   std::iota(all.begin(), all.end(), 0);
   sets.push_back(std::move(all));  // without guides: means over wider windows
   for (const double sigma : guided_scales)
-    if (!region.guides.empty() || sigma > plain_scales[2]) add(sigma, true, sets);
+    if (!guides.empty() || sigma > plain_scales[2]) add(sigma, true, sets);
   return out;
 }
 

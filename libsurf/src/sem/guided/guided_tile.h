@@ -25,8 +25,9 @@ struct GuidedRegion {
   /// The same by each pixel's own scatter: right on average.
   std::array<std::vector<double>, 2> raw_noise;
   std::vector<double> weight;  ///< of a squared error: 1 / yield^2; 0 outside the region
-  std::vector<std::vector<double>> guides;  ///< of mean 0 and variance 1
-  std::vector<int> predicting;              ///< numbers of the guides that predict the yield
+  /// Of mean 0 and variance 1, for each half.
+  std::array<std::vector<std::vector<double>>, 2> guides;
+  std::vector<int> predicting;  ///< numbers of the guides that predict the yield
   /// How sharply guides bend at each pixel, 0 to `detail_classes` - 1: pixels of unlike detail
   /// choose their estimates apart.
   std::vector<double> detail;

@@ -109,6 +109,22 @@ TEST(GuidedEstimate, StaysWithTheCountsWhereGuidesAndNeighboursLie) {
   }
 }
 
+TEST(GuidedEstimate, GuidesOfTheSameElectronsAreCrossed) {
+  // What another detector saw of the same electrons says nothing of the yield, only of the noise.
+  const Grid<double> yield(96, 96, 0.4);
+  const CountImage counts = counts_of(yield, 64, 17);
+  std::array<Grid<double>, 2> noisy;
+  for (std::size_t h = 0; h < 2; ++h) {
+    noisy[h] = counts[h].sum;
+    for (double& n : noisy[h].data()) n /= 32;
+  }
+  const GuidedImage crossed = estimate_guided(counts, {{"other", noisy[1], false, noisy[0]}}),
+                    straight = estimate_guided(counts, {{"other", noisy[0], false, noisy[1]}});
+  EXPECT_LT(rms(crossed.mean, yield), 0.2 * rms(plain(counts), yield));
+  EXPECT_LT(rms(crossed.mean, yield), 1.3 * root_mean_square(crossed.error));
+  EXPECT_GT(rms(straight.mean, yield), 3 * rms(crossed.mean, yield));
+}
+
 TEST(GuidedEstimate, KeepsASinglePixelThatStandsOut) {
   Grid<double> yield(96, 96, 0.4);
   yield(50, 40) = 6;
@@ -191,8 +207,9 @@ TEST(GuidedTile, TilesHaveNoSeams) {
   const CountImage counts = counts_of(sampled(width, height, waves), 16, 22);
   guided::GuidedRegion r;
   r.counts = guided::region_counts(counts, {}, 0);
-  r.guides.push_back(
-      sampled(width, height, [](int x, int y) { return 5 * waves(x + 3, y) - 3; }).data());
+  for (auto& guides : r.guides)
+    guides.push_back(
+        sampled(width, height, [](int x, int y) { return 5 * waves(x + 3, y) - 3; }).data());
   r.weight.assign(r.counts.seen.size(), 1.0);
   for (std::size_t h = 0; h < 2; ++h)
     r.noise[h] = r.raw_noise[h] = std::vector<double>(r.weight.size(), 0.07);

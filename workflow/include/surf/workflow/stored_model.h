@@ -34,6 +34,9 @@ struct ModelRequest {
 /// The parameters reconstruction.model, beam.energy, beam.spot and job.cache; not the material.
 void describe(ParameterVisitor& visit, ModelRequest& request);
 
+/// Primaries that a training for the request follows.
+double training_primaries(const ModelRequest& request);
+
 struct StoredModel {
   TrainedModel trained;
   std::shared_ptr<const ImageModel> model;

@@ -78,6 +78,9 @@ inline mc::SimulationOptions training_simulation() {
   return options;
 }
 
+/// Generated surfaces that teach, where no number is given and no surface is.
+inline constexpr int usual_training_surfaces = 60;
+
 /// Trains a model on surfaces and writes it to a file.
 struct TrainJob {
   std::vector<TrainingInput> inputs;  ///< None: `surfaces` generated ones (training_surfaces.h)
