@@ -143,7 +143,8 @@ void add_sample(CLI::App& app, Action& action) {
   o->bound.add<workflow::SampleJob>(*sub, "Options", {}, {"sample.name", "output"});
   o->bound.add<workflow::SampleJob>(
       *sub, making, {},
-      {"sample.electrons", "sample.size", "sample.seed", "job.cache", "job.threads"});
+      {"sample.electrons", "sample.size", "simulation.physics", "sample.tip_lean",
+       "sample.tip_azimuth", "sample.gain_drift", "sample.seed", "job.cache", "job.threads"});
   add_quiet_flag(*sub, o->quiet)->group(making);
   sub->footer(examples);
   sub->callback([o, &action] { action = [o] { return sample(*o); }; });

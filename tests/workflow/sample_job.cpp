@@ -113,6 +113,39 @@ TEST(SampleJob, DependsOnTheSeedAndNotOnThreads) {
   EXPECT_NE(signal(a.path() / "sem.tif"), signal(c.path() / "sem.tif"));
 }
 
+TEST(SampleJob, MakesWhatAModelDoesNotKnow) {
+  const test::TemporaryFolder usual, other;
+  SampleJob job = small("pads", usual.path());
+  run(job);
+  job.folder = other.path();
+  job.physics.elastic = mc::ElasticModel::browning;
+  job.tip_lean_deg = 12;
+  job.tip_azimuth_deg = 90;
+  job.gain_drift = 0.2;
+  run(job);
+  // The tip is wider above, as the structuring function is deeper below its point reflected.
+  const Tip tip = io::read_tip(other.path() / "truth_tip.gsf");
+  const int x = tip.apex_x, y = tip.apex_y, away = std::min(y, tip.z_nm.height() - 1 - y);
+  ASSERT_GT(away, 3);
+  EXPECT_LT(tip.z_nm(x, y + away), 1.2 * tip.z_nm(x, y - away));
+  const auto truth = nlohmann::json::parse(bytes_of(other.path() / "truth.json"));
+  EXPECT_EQ(truth.at("afm").at("tip").at("lean_deg"), 12);
+  EXPECT_THAT(std::string(truth.at("sem").at("physics")), testing::HasSubstr("browning"));
+  // The gain at the corner is 1, in the middle 1.2.
+  const Image sem = io::read_image(other.path() / "sem.tif"),
+              yields = io::read_image(other.path() / "truth_sem.exr");
+  const auto gain = [&](int column, int row) {
+    return (double{sem.find("signal")->values(column, row)} - 120) /
+           (900 * double{yields.find("SE")->values(column, row)} +
+            300 * double{yields.find("BSE")->values(column, row)});
+  };
+  EXPECT_NEAR(gain(0, 0), 1, 1e-4);
+  EXPECT_NEAR(gain(job.width / 2, job.height / 2), 1.2, 1e-3);
+  EXPECT_NE(bytes_of(usual.path() / "truth_sem.exr"), bytes_of(other.path() / "truth_sem.exr"));
+  job.tip_lean_deg = 40;  // more than the half angle
+  EXPECT_THROW(run(job), UsageError);
+}
+
 TEST(SampleJob, LeavesNothingWhenCancelledOrRefused) {
   const test::TemporaryFolder folder;
   CancelToken cancel;

@@ -39,6 +39,7 @@ constexpr int fine = 3;            // samples of the true surface per AFM sample
 constexpr int per_pixel = 2;       // samples of the simulated surface per SEM pixel
 constexpr double beyond_nm = 300;  // margin of the simulated surface beyond the image
 constexpr std::size_t fewest_cascades = 2048;
+constexpr int faces_of_a_leaning_tip = 16;
 
 constexpr const char* files[] = {"afm.gsf",       "sem.tif",       "truth.gsf",
                                  "truth_tip.gsf", "truth_sem.exr", "truth.json"};
@@ -77,6 +78,11 @@ void check(const SampleJob& job) {
   if (job.cascades < fewest_cascades)
     throw UsageError("sample", fmt::format("{} cascades are too few", job.cascades),
                      fmt::format("Give {} or more", fewest_cascades));
+  const double half_angle_deg = find_scene(job.name).tip_half_angle_deg;
+  if (!(std::abs(job.tip_lean_deg) < half_angle_deg))
+    throw UsageError("`sample.tip_lean`",
+                     fmt::format("the tip's half angle is {:g} degrees", half_angle_deg),
+                     "Give less than that");
   for (const char* name : files) io::check_writable(job.folder / name);
 }
 
@@ -120,14 +126,24 @@ AfmFrame afm_frame(const SampleJob& job, const SampleScene& scene) {
   return frame;
 }
 
-/// The tip, as wide as it is `depth_nm` above its apex.
-Tip tip_of(const SampleScene& scene, double pitch_nm, double depth_nm) {
-  const double angle = scene.tip_half_angle_deg * degree, radius = scene.tip_radius_nm;
+/// The tip, as wide as it is `depth_nm` above its apex. A tip that leans is a pyramid of many
+/// faces.
+Tip tip_of(const SampleJob& job, const SampleScene& scene, double pitch_nm, double depth_nm) {
+  const double widest = (scene.tip_half_angle_deg + std::abs(job.tip_lean_deg)) * degree,
+               radius = scene.tip_radius_nm, angle = widest;
   const double kink_nm = radius * (1 - std::sin(angle));  // where the sphere ends
   const double reach_nm =
       radius * std::cos(angle) + std::max(0.0, depth_nm - kink_nm) * std::tan(angle);
   const int size = 2 * static_cast<int>(std::ceil(reach_nm / pitch_nm)) + 1;
-  return conical_tip(radius, angle, {pitch_nm, pitch_nm, size, size});
+  const TipSampling sampling{pitch_nm, pitch_nm, size, size};
+  if (job.tip_lean_deg == 0) return conical_tip(radius, angle, sampling);
+  PyramidShape shape{{}, job.tip_azimuth_deg * degree, radius};
+  for (int face = 0; face < faces_of_a_leaning_tip; ++face)
+    shape.face_angles_rad.push_back(
+        (scene.tip_half_angle_deg +
+         job.tip_lean_deg * std::cos(2 * std::numbers::pi * face / faces_of_a_leaning_tip)) *
+        degree);
+  return pyramidal_tip(shape, sampling);
 }
 
 double range_of(const HeightField& field) {
@@ -148,7 +164,7 @@ double depth_of(const SampleJob& job, const SampleScene& scene, const SampleSurf
 /// The scan of an ideal AFM. The surface extends beyond the scan as far as the tip does.
 HeightField dilated(const SampleJob& job, const SampleScene& scene, const SampleSurface& surface,
                     const AfmFrame& frame, double depth_nm, const Watch& watch) {
-  const Tip tip = tip_of(scene, scene.afm_pitch_nm / fine, depth_nm);
+  const Tip tip = tip_of(job, scene, scene.afm_pitch_nm / fine, depth_nm);
   const int margin = (tip.apex_x + fine - 1) / fine;
   const auto across = [&](int samples) { return (samples - 1 + 2 * margin) * fine + 1; };
   HeightField finer =
@@ -202,19 +218,23 @@ mc::Scene monte_carlo_scene(const SampleJob& job, const SampleScene& scene,
   mc::Beam beam;
   beam.energy_ev = scene.energy_ev;
   beam.spot_nm = scene.spot_nm;
-  return mc::Scene(specimen, beam, scan_of(job, scene));
+  return mc::Scene(specimen, beam, scan_of(job, scene), job.physics);
 }
 
-/// The simulated signal of the detector.
-Image signal_of(const SampleScene& scene, const Image& yields) {
+/// The simulated signal of the detector. The gain drifts along a wave over the image's diagonal.
+Image signal_of(const SampleJob& job, const SampleScene& scene, const Image& yields) {
   Image image = yields;
   image.channels = {{"signal", "1", Grid<float>(yields.width(), yields.height())}};
   const auto& se = yields.find("SE")->values.data();
   const auto& bse = yields.find("BSE")->values.data();
   auto& signal = image.channels.front().values.data();
-  for (std::size_t i = 0; i < signal.size(); ++i)
-    signal[i] = static_cast<float>(scene.se_gain * double{se[i]} + scene.bse_gain * double{bse[i]} +
-                                   scene.offset);
+  for (std::size_t i = 0; i < signal.size(); ++i) {
+    const double along = static_cast<double>(i % static_cast<std::size_t>(job.width)) / job.width +
+                         static_cast<double>(i / static_cast<std::size_t>(job.width)) / job.height,
+                 gain = 1 + job.gain_drift * std::sin(std::numbers::pi * along);
+    signal[i] = static_cast<float>(
+        gain * (scene.se_gain * double{se[i]} + scene.bse_gain * double{bse[i]}) + scene.offset);
+  }
   return image;
 }
 
@@ -222,41 +242,46 @@ nlohmann::ordered_json truth_of(const SampleJob& job, const SampleScene& scene,
                                 const AfmFrame& frame) {
   const Affine& map = frame.sem_to_afm;
   const AffineParts parts = parts_of(map);
-  return {
-      {"sample", scene.name},
-      {"what", scene.what},
-      {"semsurf_version", version()},
-      {"seed", job.seed},
-      {"sem_to_afm", {map.xx, map.xy, map.x0, map.yx, map.yy, map.y0}},
-      {"sem_to_afm_parts",
-       {{"rotation_deg", parts.rotation_rad / degree},
-        {"scale_x", parts.scale_x},
-        {"scale_y", parts.scale_y},
-        {"shear", parts.shear},
-        {"shift_x_nm", parts.shift_x_nm},
-        {"shift_y_nm", parts.shift_y_nm}}},
-      {"sem",
-       {{"width", job.width},
-        {"height", job.height},
-        {"pixel_nm", scene.sem_pixel_nm},
-        {"material", scene.material},
-        {"energy_ev", scene.energy_ev},
-        {"spot_nm", scene.spot_nm},
-        {"electrons", job.electrons},
-        {"gains", {{"SE", scene.se_gain}, {"BSE", scene.bse_gain}}},
-        {"offset", scene.offset}}},
-      {"afm",
-       {{"width", frame.width},
-        {"height", frame.height},
-        {"pitch_nm", scene.afm_pitch_nm},
-        {"tip", {{"radius_nm", scene.tip_radius_nm}, {"half_angle_deg", scene.tip_half_angle_deg}}},
-        {"noise",
-         {{"alpha", scene.afm_noise.alpha},
-          {"innovation_nm2", scene.afm_noise.innovation_nm2},
-          {"variance_nm2", scene.afm_noise.variance_nm2()}}},
-        {"tilt_x_deg", scene.tilt_x_deg},
-        {"tilt_y_deg", scene.tilt_y_deg},
-        {"offset_nm", scene.afm_offset_nm}}}};
+  return {{"sample", scene.name},
+          {"what", scene.what},
+          {"semsurf_version", version()},
+          {"seed", job.seed},
+          {"sem_to_afm", {map.xx, map.xy, map.x0, map.yx, map.yy, map.y0}},
+          {"sem_to_afm_parts",
+           {{"rotation_deg", parts.rotation_rad / degree},
+            {"scale_x", parts.scale_x},
+            {"scale_y", parts.scale_y},
+            {"shear", parts.shear},
+            {"shift_x_nm", parts.shift_x_nm},
+            {"shift_y_nm", parts.shift_y_nm}}},
+          {"sem",
+           {{"width", job.width},
+            {"height", job.height},
+            {"pixel_nm", scene.sem_pixel_nm},
+            {"material", scene.material},
+            {"physics", mc::format_physics(job.physics)},
+            {"gain_drift", job.gain_drift},
+            {"energy_ev", scene.energy_ev},
+            {"spot_nm", scene.spot_nm},
+            {"electrons", job.electrons},
+            {"gains", {{"SE", scene.se_gain}, {"BSE", scene.bse_gain}}},
+            {"offset", scene.offset}}},
+          {"afm",
+           {{"width", frame.width},
+            {"height", frame.height},
+            {"pitch_nm", scene.afm_pitch_nm},
+            {"tip",
+             {{"radius_nm", scene.tip_radius_nm},
+              {"half_angle_deg", scene.tip_half_angle_deg},
+              {"lean_deg", job.tip_lean_deg},
+              {"azimuth_deg", job.tip_azimuth_deg}}},
+            {"noise",
+             {{"alpha", scene.afm_noise.alpha},
+              {"innovation_nm2", scene.afm_noise.innovation_nm2},
+              {"variance_nm2", scene.afm_noise.variance_nm2()}}},
+            {"tilt_x_deg", scene.tilt_x_deg},
+            {"tilt_y_deg", scene.tilt_y_deg},
+            {"offset_nm", scene.afm_offset_nm}}}};
 }
 
 std::map<std::string, std::string> provenance_of(const SampleJob& job) {
@@ -272,6 +297,7 @@ Identity identity_of(const SampleJob& job, const mc::SimulationOptions& options)
           {"electrons", std::to_string(job.electrons)},
           {"cascades", std::to_string(job.cascades)},
           {"seed", std::to_string(job.seed)},
+          {"physics", mc::format_physics(job.physics)},
           {"tile_pixels", std::to_string(options.tile_pixels)},
           {"instruction set", std::string(instruction_set())},
           {"ray tracer", mc::ray_tracer_version()},
@@ -307,11 +333,11 @@ void write_all(const SampleJob& job, const SampleScene& scene, const SampleSurfa
   };
   const auto made = provenance_of(job);
   io::write_height_field(path("afm.gsf"), scan, made);
-  Image sem = signal_of(scene, yields);
+  Image sem = signal_of(job, scene, yields);
   sem.metadata["beam.energy_ev"] = format_exact(scene.energy_ev);  // a microscope records it too
   io::write_image(path("sem.tif"), sem);
   io::write_height_field(path("truth.gsf"), truth, made);
-  io::write_tip(path("truth_tip.gsf"), tip_of(scene, scene.afm_pitch_nm, depth_nm), made);
+  io::write_tip(path("truth_tip.gsf"), tip_of(job, scene, scene.afm_pitch_nm, depth_nm), made);
   io::write_image(path("truth_sem.exr"), yields);
   io::write_text(path("truth.json"), truth_of(job, scene, frame).dump(2) + "\n");
 }
@@ -338,6 +364,19 @@ void describe(ParameterVisitor& visit, SampleJob& job) {
         });
         job.width = *scan.width, job.height = *scan.height;
       });
+  describe(visit, job.physics);
+  visit(job.tip_lean_deg,
+        {.name = "sample.tip_lean",
+         .help = "How much wider the tip's half angle is on one side, and narrower on the other",
+         .unit = Unit::deg,
+         .limits = within(-60, 60)});
+  visit(job.tip_azimuth_deg, {.name = "sample.tip_azimuth",
+                              .help = "Where the wider side is, from +x, anticlockwise",
+                              .unit = Unit::deg});
+  visit(job.gain_drift, {.name = "sample.gain_drift",
+                         .help = "Share by which the SEM's gain drifts over the image, as charging "
+                                 "makes it",
+                         .limits = within(-0.5, 0.5)});
   visit(job.seed, {.name = "sample.seed",
                    .help = "Seed of noise and simulation: the same seed gives the same files"});
   describe_cache(visit, job.cache);

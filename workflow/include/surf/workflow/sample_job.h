@@ -10,6 +10,7 @@
 #include "surf/core/affine.h"
 #include "surf/core/parameters.h"
 #include "surf/core/progress.h"
+#include "surf/mc/physics/physics.h"
 #include "surf/workflow/simulate_job.h"
 
 namespace surf::workflow {
@@ -48,7 +49,13 @@ struct SampleJob {
   /// Cascades in the library that the SEM image is replayed from, at least 2048. The library's
   /// chance error is common to all pixels: 0.7 % with 40960 cascades.
   std::size_t cascades = 40960;
-  std::uint64_t seed = 1;        ///< seed of all random numbers
+  std::uint64_t seed = 1;  ///< seed of all random numbers
+  /// What a reconstruction may not know: another physics than its model's; a tip that leans to one
+  /// side, so that its half angle differs by as much on two sides and less between; a gain that
+  /// drifts by this share over the image, as charging makes it.
+  mc::Physics physics;
+  double tip_lean_deg = 0, tip_azimuth_deg = 0;
+  double gain_drift = 0;
   int threads = 0;               ///< 0: one per hardware thread. Does not change the result
   std::filesystem::path cache;   ///< where libraries of cascades are stored; empty: nowhere
   CheckpointOptions checkpoint;  ///< for the SEM image; by default the file is beside sem.tif
