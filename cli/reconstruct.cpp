@@ -78,10 +78,15 @@ void print_summary(const workflow::ReconstructSummary& s, const workflow::Recons
     print_residual("AFM", s.result.scales.back().afm_residual);
     print_residual("SEM", s.result.scales.back().sem_residual);
   }
+  if (s.result.sem_discrepancy_share > 0)
+    line("model",
+         fmt::format("off by {:.2g} % of the SEM image's contrast, as far as it is allowed "
+                     "to be",
+                     100 * s.result.sem_discrepancy_share));
   print_surface(s.result);
   if (s.truth) {
     line("truth",
-         fmt::format("{:.3g} nm rms off, {:.3g} nm before ({:.3f} of the squared error); mean "
+         fmt::format("{:.3g} nm rms off, {:.3g} nm before ({:.3f} of the squared error); median "
                      "difference {:.3g} nm taken off",
                      s.truth->rms_nm, s.truth->start_rms_nm,
                      std::pow(s.truth->rms_nm / std::max(s.truth->start_rms_nm, 1e-300), 2),
@@ -89,6 +94,14 @@ void print_summary(const workflow::ReconstructSummary& s, const workflow::Recons
     if (s.truth->coverage_2 > 0)
       line("", fmt::format("{:.1f} % within one, {:.1f} % within two standard deviations",
                            100 * s.truth->coverage_1, 100 * s.truth->coverage_2));
+    for (const workflow::RegionReport& region : s.truth->regions)
+      line("",
+           fmt::format(
+               "{:<9}  {:4.1f} %: {:.3g} nm off, {:.3g} nm stated; {:.1f} % within one, "
+               "{:.1f} % within two",
+               region.name,
+               100 * static_cast<double>(region.pixels) / static_cast<double>(s.truth->pixels),
+               region.rms_nm, region.stated_nm, 100 * region.coverage_1, 100 * region.coverage_2));
   }
   print_written(s.written);
 }

@@ -161,6 +161,8 @@ int vtkSemsurfReconstruct::RequestData(vtkInformation*, vtkInformationVector** i
           if (!r.sem_residual.empty()) {
             const auto compared = pv::make_image_like(surface);
             pv::add_values(compared, std::move(r.sem_residual), "residual", "1");
+            if (!r.sem_discrepancy.empty())
+              pv::add_values(compared, std::move(r.sem_discrepancy), "discrepancy", "1");
             pv::add_values(compared, std::move(r.simulated_sem), "simulated", "1");
             compared->GetPointData()->SetActiveScalars("residual");
             pv::give(outputs->GetInformationObject(3), compared);

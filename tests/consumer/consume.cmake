@@ -25,7 +25,7 @@ set(packages_of_reconstruction Ceres)
 set(libraries_of_mesh OpenMesh)
 set(libraries_of_registration fftw3f nlopt)
 set(libraries_of_sem OpenMesh ceres cholmod openblas)   # which Ceres itself brings
-set(libraries_of_reconstruction OpenMesh ceres cholmod openblas)
+set(libraries_of_reconstruction OpenMesh ceres cholmod nlopt openblas)
 foreach(component IN LISTS COMPONENTS)
   set(forbidden ${packages})
   list(REMOVE_ITEM forbidden ${packages_of_${component}} "")

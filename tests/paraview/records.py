@@ -67,7 +67,7 @@ STEPS = {
         "Prior": (0.25, "reconstruction.prior=0.25"), "FixedTransform": (1, "reconstruction.fixed_transform=on"),
         "FixedCalibration": (1, "reconstruction.fixed_calibration=on"), "RefineTip": (1, "reconstruction.refine_tip=on"),
         "KeepTip": (1, "reconstruction.keep_tip=on"), "NoUncertainty": (0, "reconstruction.no_uncertainty=off"),
-        "Probes": (3, "reconstruction.probes=3"), "Upsample": (2, "reconstruction.upsample=2")},
+        "Probes": (3, "reconstruction.probes=3"), "ModelError": (0.02, "reconstruction.model_error=0.02"), "Upsample": (2, "reconstruction.upsample=2")},
     "AFMTip": {"Shape": ("Ball", "tip.shape=ball:5nm"), "Radius": (7, "tip.shape=cone:7nm,15deg"),
                "HalfAngle": (20, "tip.shape=cone:5nm,20deg"), "Faces": (3, "tip.shape=pyramid:5nm,15deg,3", {"Shape": "Pyramid"}),
                "Rotation": (9, "tip.shape=pyramid:5nm,15deg,4,9deg", {"Shape": "Pyramid"}),

@@ -88,7 +88,7 @@ TEST(AfmPreparation, TipsAreRoundUnlessASizeIsSaid) {
 TEST(AfmPreparation, AScanThatTellsNothingOfItsTipIsTheSurface) {
   const PreparedAfm p = prepare_afm(scan(5));  // corners square to the pixel bound no tip
   EXPECT_EQ(p.tip.z_nm.width(), 1);
-  EXPECT_THAT(p.warnings, testing::Contains(testing::HasSubstr("taken as sharp")));
+  EXPECT_THAT(p.tip_warnings, testing::Contains(testing::HasSubstr("taken as sharp")));
 }
 
 TEST(AfmPreparation, DoubtsATipThatTheScanDoesNotTell) {

@@ -31,7 +31,14 @@ Reporter keeping(PreparedAfm& prepared, const Watch& watch) {
   return reporter;
 }
 
-void level_scan(PreparedAfm& prepared, const HeightField& scan, const AfmPreparationOptions& o) {
+/// Rough ground has no plane of its own, and the best of several may be any.
+void find_level_doubt(PreparedAfm& prepared, const Mask& substrate) {
+  if (prepared.tilt_deg > 0)
+    prepared.level_doubt =
+        doubt_of_plane(prepared.image, prepared.rough_ground ? Mask() : substrate);
+}
+
+Mask level_scan(PreparedAfm& prepared, const HeightField& scan, const AfmPreparationOptions& o) {
   LevelResult levelled = level(scan, o.level, {}, keeping(prepared, o.watch.part(0, 0.1)));
   prepared.tilt_deg = levelled.tilt_deg;
   if (levelled.rows) prepared.notes.push_back("steps between scan lines taken off");
@@ -45,18 +52,21 @@ void level_scan(PreparedAfm& prepared, const HeightField& scan, const AfmPrepara
         fmt::format("levelled by the plane that {:.0f} % of the scan lies on, tilt {:.3g} deg",
                     100 * levelled.hough->inlier_share, prepared.tilt_deg));
   prepared.image = std::move(levelled.field);
+  return levelled.substrate;
 }
 
 void find_noise(PreparedAfm& prepared, const AfmPreparationOptions& o) {
+  FlatNoiseOptions flat;
+  flat.watch = o.watch.part(0.1, 0.15);
+  const SubstrateNoise substrate = estimate_substrate_noise(prepared.image, flat);
+  const bool ground = is_rough_ground(substrate),
+             clear = substrate.plane.verdict == HoughVerdict::clear && !ground;
+  prepared.rough_ground = ground || substrate.plane.verdict == HoughVerdict::weak;
   if (o.noise) {
     validate(*o.noise, "`scan.height_noise`");
     prepared.noise = *o.noise;
     return;
   }
-  FlatNoiseOptions flat;
-  flat.watch = o.watch.part(0.1, 0.15);
-  const SubstrateNoise substrate = estimate_substrate_noise(prepared.image, flat);
-  const bool clear = substrate.plane.verdict == HoughVerdict::clear && !is_rough_ground(substrate);
   const NoiseEstimate estimate = clear ? substrate.estimate : estimate_noise(prepared.image);
   prepared.noise = estimate.noise;
   prepared.noise_estimate = estimate;
@@ -95,12 +105,14 @@ void search_round_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, con
   prepared.tip_threshold_nm = found.summary.threshold_nm;
   prepared.tip_round = true;
   if (!found.summary.bounded) {
-    prepared.warnings.push_back(
+    prepared.tip_warnings.push_back(
         "the scan tells nothing of its tip, which is taken as sharp, so that the scan is the "
         "surface. Give `reconstruction.tip` if you know it");
     return;
   }
-  tell_tip_doubt(prepared.tip, keeping(prepared, watch));
+  Reporter told = keeping(prepared, watch);
+  told.on_warning = [&prepared](const std::string& text) { prepared.tip_warnings.push_back(text); };
+  tell_tip_doubt(prepared.tip, told);
   prepared.notes.push_back(
       fmt::format("round tip of {} x {} samples, from what blind ones of up to {} samples tell",
                   prepared.tip.z_nm.width(), prepared.tip.z_nm.height(), found.summary.widest));
@@ -145,8 +157,9 @@ PreparedAfm prepare_afm(const HeightField& scan, const AfmPreparationOptions& o)
     throw InvalidInput("AFM scan", "all its heights are the same",
                        "Choose the channel of heights with `scan.height_channel`");
   PreparedAfm prepared;
-  level_scan(prepared, scan, o);
+  const Mask substrate = level_scan(prepared, scan, o);
   find_noise(prepared, o);
+  find_level_doubt(prepared, substrate);
   choose_tip(prepared, o);
   if (prepared.tip.z_nm.width() > scan.z_nm.width() ||
       prepared.tip.z_nm.height() > scan.z_nm.height())

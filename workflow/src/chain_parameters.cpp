@@ -184,8 +184,9 @@ void describe(ParameterVisitor& visit, PoseOptions& pose) {
       [&](std::string_view text, const std::string& subject) {
         read_transform(text, subject, pose);
       });
-  visit(pose.accept_unverified, {.name = "registration.accept_registration",
-                                 .help = "Go on where the registration is not verified"});
+  visit(pose.accept_unverified,
+        {.name = "registration.accept_registration",
+         .help = "Go on even where the images seem to show different places"});
 }
 
 void describe(ParameterVisitor& visit, RegisterJob& job) {
@@ -229,6 +230,13 @@ void describe(ParameterVisitor& visit, ReconstructJob& job) {
         [&](std::string_view text, const std::string& subject) {
           job.sem_noise = read_sem_noise(text, subject);
         });
+    visit(
+        job.model_error,
+        {.name = "reconstruction.model_error",
+         .help = "What the model of SEM images may be off by, as a share of the image's contrast: "
+                 "by other physics, another detector, contamination",
+         .unit = Unit::share,
+         .limits = within(0, 1)});
   }
   if (job.afm && job.sem) describe(visit, job.pose);
   ReconstructionOptions options = job.options;

@@ -22,7 +22,11 @@ void begin(const Reporter& reporter, const char* stage) {
   reporter.stage(stage);
 }
 
-PreparedAfm prepare(const AfmInput& afm, int threads, const Reporter& reporter) {
+void warn_of_tip(const PreparedAfm& prepared, const Reporter& reporter) {
+  for (const std::string& warning : prepared.tip_warnings) reporter.warn("AFM: " + warning);
+}
+
+PreparedAfm prepare(const AfmInput& afm, int threads, const Reporter& reporter, bool of_tip) {
   begin(reporter, "AFM scan");
   AfmPreparationOptions options = afm.preparation;
   options.threads = threads;
@@ -30,6 +34,7 @@ PreparedAfm prepare(const AfmInput& afm, int threads, const Reporter& reporter) 
   PreparedAfm prepared = prepare_afm(afm.scan, options);
   for (const std::string& note : prepared.notes) reporter.note("AFM: " + note);
   for (const std::string& warning : prepared.warnings) reporter.warn("AFM: " + warning);
+  if (of_tip) warn_of_tip(prepared, reporter);
   return prepared;
 }
 

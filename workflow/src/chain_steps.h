@@ -9,8 +9,11 @@ namespace surf::workflow {
 
 void begin(const Reporter& reporter, const char* stage);
 
-/// Prepares the scan and passes its notes and warnings on.
-PreparedAfm prepare(const AfmInput& afm, int threads, const Reporter& reporter);
+/// Prepares the scan and passes its notes and warnings on, those of the tip only if no other step
+/// is to find one.
+PreparedAfm prepare(const AfmInput& afm, int threads, const Reporter& reporter,
+                    bool warn_of_tip = true);
+void warn_of_tip(const PreparedAfm& prepared, const Reporter& reporter);
 
 /// Finds the model for the pixel size of the SEM image. Pixels must be square.
 StoredModel model_of(ModelRequest request, const PlacedImage& sem, const Reporter& reporter);

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "sem_frame.h"
 #include "surf/afm/background.h"
@@ -14,33 +16,40 @@ namespace {
 
 constexpr std::int64_t least_pixels = 16;
 
+// Regions, as tangents of the slope.
+constexpr double flat_below = 0.1, wall_above = 0.577;
+constexpr int around_px = 3;
+
 struct Differences {
   HeightField less;  // surface minus truth, valid where both are
-  double mean = 0, rms = 0;
+  double middle = 0, rms = 0;
   std::int64_t count = 0;
 };
 
 Differences differences(const HeightField& surface, const HeightField& truth) {
   Differences d{surface, 0, 0, 0};
   d.less.valid = Mask(surface.z_nm.width(), surface.z_nm.height());
-  double sum = 0, squared = 0;
+  std::vector<double> all;
   for (int y = 0; y < surface.z_nm.height(); ++y)
     for (int x = 0; x < surface.z_nm.width(); ++x) {
       if (!surface.is_valid(x, y) || !truth.is_valid(x, y)) continue;
       const double less = surface.z_nm(x, y) - truth.z_nm(x, y);
       d.less.z_nm(x, y) = less;
       d.less.valid(x, y) = 1;
-      sum += less;
-      squared += less * less;
-      ++d.count;
+      all.push_back(less);
     }
+  d.count = static_cast<std::int64_t>(all.size());
   if (d.count < least_pixels)
     throw InvalidInput(
         "`reconstruction.truth`",
         fmt::format("it has {} places in common with the surface", d.count),
         "Give heights in the frame of the SEM image, or of the scan where there is none");
-  d.mean = sum / static_cast<double>(d.count);
-  d.rms = std::sqrt(std::max(squared / static_cast<double>(d.count) - d.mean * d.mean, 0.0));
+  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+  std::ranges::nth_element(all, middle);
+  d.middle = *middle;
+  double squared = 0;
+  for (const double less : all) squared += (less - d.middle) * (less - d.middle);
+  d.rms = std::sqrt(squared / static_cast<double>(d.count));
   return d;
 }
 
@@ -49,6 +58,71 @@ double rms_of(const HeightField& field) {
   for (std::size_t i = 0; i < field.z_nm.size(); ++i)
     if (field.valid.data()[i]) squared += field.z_nm.data()[i] * field.z_nm.data()[i], ++count;
   return std::sqrt(squared / count);
+}
+
+/// The largest slope within some pixels of each.
+Grid<double> largest_around(const Grid<double>& slope, int around) {
+  Grid<double> along = slope, out = slope;
+  const int w = slope.width(), h = slope.height();
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x)
+      for (int u = std::max(0, x - around); u <= std::min(w - 1, x + around); ++u)
+        along(x, y) = std::max(along(x, y), slope(u, y));
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x) {
+      out(x, y) = along(x, y);
+      for (int v = std::max(0, y - around); v <= std::min(h - 1, y + around); ++v)
+        out(x, y) = std::max(out(x, y), along(x, v));
+    }
+  return out;
+}
+
+Grid<double> slopes_of(const HeightField& f) {
+  const int w = f.z_nm.width(), h = f.z_nm.height();
+  Grid<double> slope(w, h);
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x) {
+      const int x0 = std::max(0, x - 1), x1 = std::min(w - 1, x + 1), y0 = std::max(0, y - 1),
+                y1 = std::min(h - 1, y + 1);
+      if (x0 == x1 || y0 == y1) continue;
+      slope(x, y) = std::hypot((f.z_nm(x1, y) - f.z_nm(x0, y)) / ((x1 - x0) * f.pitch_x_nm),
+                               (f.z_nm(x, y1) - f.z_nm(x, y0)) / ((y1 - y0) * f.pitch_y_nm));
+    }
+  return slope;
+}
+
+std::vector<RegionReport> regions_of(const Reconstruction& result, const HeightField& truth,
+                                     const Differences& d) {
+  const Grid<double> slope = slopes_of(truth), around = largest_around(slope, around_px);
+  std::vector<RegionReport> regions(4);
+  const char* const names[] = {"flat", "wall", "foot", "untouched"};
+  for (std::size_t i = 0; i < d.less.z_nm.size(); ++i) {
+    if (!d.less.valid.data()[i]) continue;
+    const double off = std::abs(d.less.z_nm.data()[i] - d.middle),
+                 deviation = result.deviation_nm.data()[i];
+    const bool wall = slope.data()[i] > wall_above;
+    const bool in[] = {around.data()[i] < flat_below, wall, !wall && around.data()[i] > wall_above,
+                       !result.data_support.empty() && (result.data_support.data()[i] & 1) == 0};
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+      if (!in[r]) continue;
+      ++regions[r].pixels;
+      regions[r].rms_nm += off * off;
+      regions[r].stated_nm += deviation * deviation;
+      regions[r].coverage_1 += off <= deviation;
+      regions[r].coverage_2 += off <= 2 * deviation;
+    }
+  }
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    RegionReport& region = regions[r];
+    region.name = names[r];
+    const auto n = static_cast<double>(std::max<std::int64_t>(region.pixels, 1));
+    region.rms_nm = std::sqrt(region.rms_nm / n);
+    region.stated_nm = std::sqrt(region.stated_nm / n);
+    region.coverage_1 /= n;
+    region.coverage_2 /= n;
+  }
+  std::erase_if(regions, [](const RegionReport& r) { return r.pixels == 0; });
+  return regions;
 }
 
 }  // namespace
@@ -71,7 +145,7 @@ TruthReport compare_with_truth(const Reconstruction& result, const HeightField& 
   Differences d = differences(result.surface, there);
   TruthReport report;
   report.rms_nm = d.rms;
-  report.offset_nm = d.mean;
+  report.offset_nm = d.middle;
   report.pixels = d.count;
   if (result.start.z_nm.width() == there.z_nm.width() &&
       result.start.z_nm.height() == there.z_nm.height())
@@ -80,13 +154,14 @@ TruthReport compare_with_truth(const Reconstruction& result, const HeightField& 
     std::int64_t within_1 = 0, within_2 = 0;
     for (std::size_t i = 0; i < d.less.z_nm.size(); ++i) {
       if (!d.less.valid.data()[i]) continue;
-      const double off = std::abs(d.less.z_nm.data()[i] - d.mean),
+      const double off = std::abs(d.less.z_nm.data()[i] - d.middle),
                    deviation = result.deviation_nm.data()[i];
       within_1 += off <= deviation;
       within_2 += off <= 2 * deviation;
     }
     report.coverage_1 = static_cast<double>(within_1) / static_cast<double>(d.count);
     report.coverage_2 = static_cast<double>(within_2) / static_cast<double>(d.count);
+    report.regions = regions_of(result, there, d);
   }
   subtract(d.less, fit_plane(d.less));
   report.plane_rms_nm = rms_of(d.less);

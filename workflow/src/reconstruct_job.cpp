@@ -23,6 +23,7 @@
 #include "surf/io/transform_file.h"
 #include "surf/workflow/step_record.h"
 #include "surf/workflow/version.h"
+#include "tip_with_sem.h"
 
 namespace surf::workflow {
 namespace {
@@ -75,6 +76,9 @@ Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const S
     id["offset"] = format_exact(sem->offset);
     id["SEM noise"] = text_of({sem->noise.slope, sem->noise.intercept, sem->noise.least_variance});
     id["transform"] = map_text(sem->sem_to_afm);
+    for (const SemDiscrepancy& part : sem->discrepancy)
+      id["model error"] +=
+          fmt::format("{} {:g} ", hash_of(part.deviation.data()), part.correlation_px);
   }
   return id;
 }
@@ -111,6 +115,14 @@ bool like_noise(const ResidualReport& r) {
          std::max(std::abs(r.along), std::abs(r.across)) <= largest_correlation;
 }
 
+/// What the SEM image may be displaced by where its place is not certain.
+double place_doubt_px(const ReconstructSummary& s) {
+  constexpr double most = 100;
+  if (!s.pose || s.pose->verified()) return 0;
+  const double stderr_px = s.pose->registration->stderr_px;
+  return std::isfinite(stderr_px) ? std::min(stderr_px, most) : most;
+}
+
 /// Reasons against trusting the result.
 std::vector<std::string> reasons_of(const ReconstructSummary& s) {
   std::vector<std::string> reasons;
@@ -135,8 +147,11 @@ std::vector<std::string> reasons_of(const ReconstructSummary& s) {
   if (s.afm && !s.afm->tip.doubt.empty())
     reasons.push_back(fmt::format("the AFM tip is not to be trusted: {}", s.afm->tip.doubt));
   if (s.pose && !s.pose->verified())
-    reasons.push_back(fmt::format("the registration is {} and was accepted all the same",
-                                  name(s.pose->registration->verdict)));
+    reasons.push_back(fmt::format(
+        "the registration is {} ({}): walls may be displaced by {:.2g} pixels, which the "
+        "deviations "
+        "contain",
+        name(s.pose->registration->verdict), s.pose->registration->reason, place_doubt_px(s)));
   return reasons;
 }
 
@@ -156,6 +171,12 @@ void keep_registration(const ReconstructJob& job, const PlacedImage& image, Reco
   io::Plot picture = registration_picture(image, s.pose->simulated, s.pose->sem_to_afm);
   picture.metadata = file.notes;
   io::write_plot(s.written.back(), picture);
+}
+
+/// Whether a blind tip is replaced by one that is found with the SEM image.
+bool finds_tip(const ReconstructJob& job) {
+  return job.afm && job.sem && !job.afm->preparation.tip && job.afm->preparation.tip_size == 0 &&
+         job.refine_tip.value_or(true);
 }
 
 /// Collects the warnings of the chain's steps for a job.
@@ -186,7 +207,13 @@ SemData sem_data(const ReconstructJob& job, ReconstructSummary& s, const PlacedI
   FirstCalibration first =
       calibrate_first(image, eroded, *s.model->model, map, job.calibration, job.sem_noise, threads);
   const auto data = [&] {
-    return SemData{image, s.model->model, first.gains, first.offset, first.noise, map};
+    return SemData{image,
+                   s.model->model,
+                   first.gains,
+                   first.offset,
+                   first.noise,
+                   map,
+                   usual_discrepancy(image, job.model_error)};
   };
   for (int round = 0; afm && !(job.calibration && job.sem_noise) && round < rounds; ++round) {
     ReconstructionOptions coarse;
@@ -198,6 +225,7 @@ SemData sem_data(const ReconstructJob& job, ReconstructSummary& s, const PlacedI
     coarse.refine_tip = options_of(job, s).refine_tip;
     coarse.curvature_prior_per_nm = job.options.curvature_prior_per_nm;
     coarse.uncertainty = false;
+    coarse.rough_ground = s.afm && s.afm->rough_ground;
     coarse.threads = threads;
     coarse.watch = told.watch().part(double(round) / rounds, double(round + 1) / rounds);
     const SemData sem = data();
@@ -223,6 +251,8 @@ SemData sem_data(const ReconstructJob& job, ReconstructSummary& s, const PlacedI
 
 ReconstructionOptions options_of(const ReconstructJob& job, const ReconstructSummary& s) {
   ReconstructionOptions o = job.options;
+  o.place_doubt_px = place_doubt_px(s);
+  o.rough_ground = s.afm && s.afm->rough_ground;
   // It would follow the direction in which the channels cannot be told apart.
   if (s.gains_tied) o.refine_calibration = false;
   o.refine_tip = job.afm && job.sem && o.method == ReconstructionMethod::gauss_newton &&
@@ -246,13 +276,16 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
     if (request.folder.empty()) request.folder = job.folder;  // no cache folder
     s.model = model_of(request, image, told);
   }
-  if (job.afm) s.afm = prepare(*job.afm, threads, told);
+  if (job.afm) s.afm = prepare(*job.afm, threads, told, !finds_tip(job));
   if (job.afm && job.sem) {
     // An error of a pixel is small enough as an initial guess: the map is fitted with the surface.
     PoseOptions pose = job.pose;
     pose.registration.largest_stderr_px = std::max(pose.registration.largest_stderr_px, 1.0);
     s.pose = pose_of(pose, *s.afm, image, *s.model, threads, told);
-    if (!s.pose->verified() && !job.pose.accept_unverified) {
+    if (finds_tip(job) && !find_tip_with_sem(*s.afm, *s.pose, pose, image, *s.model, threads, told))
+      warn_of_tip(*s.afm, told);
+    if (s.pose->registration && s.pose->registration->verdict == RegistrationVerdict::unrelated &&
+        !job.pose.accept_unverified) {
       keep_registration(job, image, s);
       s.verdict = ReconstructionVerdict::not_registered;
       s.reasons = {fmt::format("the registration is {}: {}", name(s.pose->registration->verdict),
@@ -262,7 +295,8 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
   }
   std::optional<AfmData> afm;
   std::optional<SemData> sem;
-  if (job.afm) afm = AfmData{s.afm->image, s.afm->tip, s.afm->noise, job.upsample};
+  if (job.afm)
+    afm = AfmData{s.afm->image, s.afm->tip, s.afm->noise, job.upsample, s.afm->level_doubt};
   if (job.sem) sem = sem_data(job, s, image, afm ? &*afm : nullptr, told);
 
   begin(told, "reconstruction");

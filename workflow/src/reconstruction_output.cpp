@@ -142,6 +142,8 @@ Image sem_image(const Reconstruction& r, const SemData& sem, const Metadata& mad
       channel("simulated", "1", r.simulated_sem), channel("sem", "1", sem.image.values),
       channel("residual", "1", r.sem_residual),
       valid_channel(sem.image.valid, r.simulated_sem.width(), r.simulated_sem.height())};
+  if (!r.sem_discrepancy.empty())
+    image.channels.push_back(channel("discrepancy", "1", r.sem_discrepancy));
   return image;
 }
 

@@ -66,10 +66,12 @@ Json afm_json(const ReconstructJob& job, const ReconstructSummary& s, const AfmD
     json["noise"]["alpha_stderr"] = number(p.noise_estimate->alpha_stderr);
     json["noise"]["innovation_stderr_nm2"] = number(p.noise_estimate->innovation_stderr_nm2);
   }
-  json["tip"] = {{"from", p.tip_given   ? "given"
-                          : p.tip_round ? "blind reconstruction, taken as round"
-                                        : "blind reconstruction"},
-                 {"samples", {p.tip.z_nm.width(), p.tip.z_nm.height()}}};
+  json["tip"] = {
+      {"from", p.tip_given      ? "given"
+               : p.tip_from_sem ? "the SEM image: the tip whose eroded scan explains it best"
+               : p.tip_round    ? "blind reconstruction, taken as round"
+                                : "blind reconstruction"},
+      {"samples", {p.tip.z_nm.width(), p.tip.z_nm.height()}}};
   if (!p.tip_given) json["tip"]["threshold_nm"] = p.tip_threshold_nm;
   json["tip"]["fitted"] = options_of(job, s).refine_tip;
   json["tip"]["profile_step_nm"] = std::min(p.tip.pitch_x_nm, p.tip.pitch_y_nm);
@@ -293,6 +295,9 @@ std::string reconstruction_report(const ReconstructJob& job, const ReconstructSu
   json["surface"] = {{"pixels", {r.surface.z_nm.width(), r.surface.z_nm.height()}},
                      {"pitch_nm", {r.surface.pitch_x_nm, r.surface.pitch_y_nm}},
                      {"converged", r.converged}};
+  if (!r.sem_discrepancy.empty())
+    json["discrepancy"] = {{"allowed_share", job.model_error},
+                           {"share_of_contrast", r.sem_discrepancy_share}};
   if (!r.data_support.empty()) json["surface"]["data_support"] = held_json(r.data_support);
   json["scales"] = scales_json(r.scales);
   if (s.truth) {
@@ -305,6 +310,12 @@ std::string reconstruction_report(const ReconstructJob& job, const ReconstructSu
                           {"plane_rms_nm", t.plane_rms_nm},
                           {"within_1_deviation", t.coverage_1},
                           {"within_2_deviations", t.coverage_2}});
+    for (const RegionReport& region : t.regions)
+      json["truth"]["regions"][region.name] = {{"pixels", region.pixels},
+                                               {"rms_nm", region.rms_nm},
+                                               {"deviation_nm", region.stated_nm},
+                                               {"within_1_deviation", region.coverage_1},
+                                               {"within_2_deviations", region.coverage_2}};
   }
   // Paths need not be UTF-8. Such bytes are replaced, so that the report is not lost.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

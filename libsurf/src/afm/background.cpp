@@ -9,6 +9,7 @@
 
 #include "afm/cholesky.h"
 #include "afm/samples.h"
+#include "surf/core/error.h"
 #include "surf/core/units.h"
 
 namespace surf {
@@ -140,6 +141,33 @@ Plane fit_plane(const HeightField& field, const Mask& use) {
   p.height_nm = f.reference_nm + f.coefficients[0] + p.slope_x * (p.centre_x_nm - x) +
                 p.slope_y * (p.centre_y_nm - y);
   return p;
+}
+
+SlopeDoubt doubt_of_plane(const HeightField& field, const Mask& use) {
+  constexpr int across = 4, blocks = across * across;
+  const int w = field.z_nm.width(), h = field.z_nm.height();
+  std::vector<Plane> planes;
+  for (int block = 0; block < blocks; ++block) {
+    Mask rest = use.empty() ? Mask(w, h, 1) : use;
+    for (int y = 0; y < h; ++y)
+      for (int x = 0; x < w; ++x)
+        if (x * across / w == block % across && y * across / h == block / across) rest(x, y) = 0;
+    try {
+      planes.push_back(fit_plane(field, rest));
+    } catch (const InvalidInput&) {  // that block holds nearly all samples
+    }
+  }
+  SlopeDoubt doubt;
+  const auto n = static_cast<double>(planes.size());
+  const auto error = [&](double Plane::*slope) {
+    double mean = 0, square = 0;
+    for (const Plane& plane : planes) mean += plane.*slope / n;
+    for (const Plane& plane : planes) square += std::pow(plane.*slope - mean, 2);
+    return n > 1 ? std::sqrt(square * (n - 1) / n) : 0;
+  };
+  doubt.x = error(&Plane::slope_x);
+  doubt.y = error(&Plane::slope_y);
+  return doubt;
 }
 
 Grid<double> fit_polynomial(const HeightField& field, int degree, const Mask& use) {

@@ -43,6 +43,21 @@ struct Differences {
 
 double squared(double v) { return v * v; }
 
+/// c^2 of each sample. Each of the four cells around a sample has a z_xy; 2 z_xy^2 is half the sum
+/// of their squares.
+Grid<double> squares(const Grid<double>& xx, const Grid<double>& yy, const Grid<double>& xy) {
+  Grid<double> out(xx.width(), xx.height());
+  for (int y = 0; y < out.height(); ++y)
+    for (int x = 0; x < out.width(); ++x) {
+      double mixed = squared(xy(x, y));
+      if (x > 0) mixed += squared(xy(x - 1, y));
+      if (y > 0) mixed += squared(xy(x, y - 1));
+      if (x > 0 && y > 0) mixed += squared(xy(x - 1, y - 1));
+      out(x, y) = squared(xx(x, y)) + squared(yy(x, y)) + 0.5 * mixed;
+    }
+  return out;
+}
+
 }  // namespace
 
 double CurvaturePrior::evaluate(const Grid<double>& z, Grid<double>* gradient,
@@ -52,20 +67,13 @@ double CurvaturePrior::evaluate(const Grid<double>& z, Grid<double>* gradient,
   const double scale = degrees * curvature_ * curvature_;
   Grid<double> wanted;
   Grid<double>& weight = weights ? *weights : wanted;
-  weight = Grid<double>(w, h);
+  weight = squares(d.xx, d.yy, d.xy);
   double sum = 0;
   for (int y = 0; y < h; ++y) {
     double line = 0;
     for (int x = 0; x < w; ++x) {
-      // Each of the four cells around a sample has a z_xy; 2 z_xy^2 is half the sum of their
-      // squares.
-      double mixed = squared(d.xy(x, y));
-      if (x > 0) mixed += squared(d.xy(x - 1, y));
-      if (y > 0) mixed += squared(d.xy(x, y - 1));
-      if (x > 0 && y > 0) mixed += squared(d.xy(x - 1, y - 1));
-      const double c2 = squared(d.xx(x, y)) + squared(d.yy(x, y)) + 0.5 * mixed;
-      line += std::log1p(c2 / scale);
-      weight(x, y) = (degrees + 1) / (scale + c2);
+      line += std::log1p(weight(x, y) / scale);
+      weight(x, y) = (degrees + 1) / (scale + weight(x, y));
     }
     sum += line;
   }
@@ -98,10 +106,8 @@ double CurvaturePrior::likely_curvature_per_nm(const Grid<double>& z) const {
 }
 
 Grid<double> CurvaturePrior::squared_curvature(const Grid<double>& z) const {
-  Grid<double> c2;
-  evaluate(z, nullptr, &c2);
-  for (double& v : c2.data()) v = (degrees + 1) / v - degrees * curvature_ * curvature_;
-  return c2;
+  const Differences d(z, pitch_nm_);
+  return squares(d.xx, d.yy, d.xy);
 }
 
 Grid<double> CurvaturePrior::weights_of(const Grid<double>& squared_curvature) const {

@@ -135,12 +135,12 @@ void fit_few(const Objective& o, Unknowns& at, const Watch& watch) {
         return c == 0 ? state.sem->simulated.data()[p] - at.mixture.back() : 1.0;
       };
       for (std::size_t p = 0; p < state.sem->pull.size(); ++p)
-        for (int i = 0; i < of_mixture; ++i) {
+        for (int i = 0; i < of_mixture; ++i)
           g(of_map + i) += state.sem->pull.data()[p] * value(i, p);
-          for (int k = 0; k < of_mixture; ++k)
-            a(of_map + i, of_map + k) +=
-                state.sem->information.data()[p] * value(i, p) * value(k, p);
-        }
+      const auto precision = o.sem->mixture_precision(*state.sem, at.mixture);
+      for (int i = 0; i < of_mixture; ++i)
+        for (int k = 0; k < of_mixture; ++k)
+          a(of_map + i, of_map + k) = precision[static_cast<std::size_t>(i + k)];
     }
     bool better = false;
     double fell = 0;

@@ -75,9 +75,8 @@ Step Objective::product(const Unknowns& at, const State& s, const Step& v,
                       afm->precision(afm->change(*s.afm, at.z_nm, v.z_nm, v.map, v.tip)), out.z_nm,
                       fit_map ? &out.map : nullptr, fit_tip ? &out.tip : nullptr);
   if (sem) {
-    Grid<double> change = sem->change(*s.sem, at.mixture, v.z_nm, v.mixture, near);
-    for (std::size_t i = 0; i < change.size(); ++i)
-      change.data()[i] *= s.sem->information.data()[i];
+    const Grid<double> change =
+        sem->precision(*s.sem, sem->change(*s.sem, at.mixture, v.z_nm, v.mixture, near));
     sem->add_gradient(*s.sem, at.mixture, change, near, out.z_nm,
                       fit_mixture ? &out.mixture : nullptr);
   }

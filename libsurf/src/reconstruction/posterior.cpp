@@ -11,6 +11,10 @@ namespace {
 
 constexpr int rounds = 3;
 constexpr int cheap_draws[rounds] = {12, 12, 48};
+// The prior's weights say where the surface bends. The likeliest surface bends in as few places as
+// it can, and a weight of its own curvature alone would take for granted where; images tell it to
+// within some pixels.
+constexpr double bend_px = 2;
 constexpr double around_px = 3;  // range over which the ratio of variances is averaged
 
 /// A draw of the gradient's change by the noise of both images: normal, with the precision of the
@@ -25,11 +29,8 @@ Step data_pull(const Objective& o, const Unknowns& at, const Objective::State& s
                         o.fit_tip ? &r.tip : nullptr);
   }
   if (o.sem) {
-    NormalNumbers normal(seed, 1);
-    Grid<double> w(o.frame.width, o.frame.height);
-    for (std::size_t i = 0; i < w.size(); ++i)
-      w.data()[i] = std::sqrt(s.sem->information.data()[i]) * normal();
-    o.sem->add_gradient(*s.sem, at.mixture, w, near, r.z_nm, o.fit_mixture ? &r.mixture : nullptr);
+    o.sem->add_gradient(*s.sem, at.mixture, o.sem->draw_precision(*s.sem, seed), near, r.z_nm,
+                        o.fit_mixture ? &r.mixture : nullptr);
   }
   return r;
 }
@@ -83,6 +84,7 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
   const auto product = [&](const Step& v) { return o.product(at, state, v, &near); };
   Preconditioner m(Preconditioner::usual_tile_px, threads, precision);
   Grid<double> without_sem;
+  const GaussianBasis bends(bend_px, threads);
   for (int round = 0; round < rounds; ++round) {
     m.factor(o, at, state);
     Preconditioner::Variances drawn = m.variances(o.prior, cheap_draws[round], seed, watch);
@@ -91,6 +93,7 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
     // Expected square: variance plus squared value.
     Grid<double>& curvature = drawn.curvature_per_nm2;
     for (std::size_t i = 0; i < curvature.size(); ++i) curvature.data()[i] += found.data()[i];
+    curvature = bends.sum(curvature);
     state.prior_weights = o.prior.weights_of(curvature);
   }
   without_sem = GaussianBasis(0.8, threads).sum(without_sem);

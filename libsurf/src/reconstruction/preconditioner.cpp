@@ -114,12 +114,13 @@ std::vector<Span> spans(int samples, int tile) {
 
 struct Preconditioner::Blocks {
   Eigen::LDLT<Eigen::MatrixXd> map, mixture, tip;
-  std::array<Grid<double>, tip_numbers> follows;  // response of the surface to the tip
+  // Response of the surface to the tip, number by number at each sample.
+  std::vector<float> follows;
   bool has_map = false, has_mixture = false, has_tip = false;
 
   void eliminate_tip(const Objective& o, const Objective::State& s, const Preconditioner& surface);
   /// Adds what map, mixture and tip contribute to a solution of the heights alone.
-  void solve(const Step& residual, Step& out) const;
+  void solve(const Step& residual, Step& out, int threads) const;
 };
 
 /// Eliminates the tip together with the surface. At a contact, tip and surface can compensate each
@@ -137,7 +138,7 @@ void Preconditioner::Blocks::eliminate_tip(const Objective& o, const Objective::
     if (c.tip_sample < 0) continue;
     const TipChange& d = s.afm->by_tip[c.tip_sample];
     for (int i = 0; i < tip_numbers; ++i)
-      for (int k = 0; k < tip_numbers; ++k) block(i, k) += q * d[i] * d[k];
+      for (int k = 0; k <= i; ++k) block(i, k) += q * d[i] * d[k];
     if (!c.inside) continue;
     const Corners at(c, w, h);
     for (int k = 0; k < tip_numbers; ++k)
@@ -145,11 +146,19 @@ void Preconditioner::Blocks::eliminate_tip(const Objective& o, const Objective::
         coupling[k].z_nm(at.x + a % 2, at.y + a / 2) += q * at.w[a] * d[k];
   }
   has_tip = false;
-  std::vector<Step> responses = surface.solve({coupling.begin(), coupling.end()});
-  for (int k = 0; k < tip_numbers; ++k) follows[k] = std::move(responses[k].z_nm);
+  const std::vector<Step> responses = surface.solve({coupling.begin(), coupling.end()});
   has_tip = true;
-  for (int i = 0; i < tip_numbers; ++i)
-    for (int k = 0; k < tip_numbers; ++k) block(i, k) -= product(coupling[i].z_nm, follows[k]);
+  const std::size_t samples = responses[0].z_nm.size();
+  follows.resize(samples * tip_numbers);
+  for (std::size_t k = 0; k < tip_numbers; ++k)
+    for (std::size_t i = 0; i < samples; ++i)
+      follows[i * tip_numbers + k] = static_cast<float>(responses[k].z_nm.data()[i]);
+  parallel_for(tip_numbers, surface.threads_, [&](std::size_t i, int) {
+    for (std::size_t k = 0; k <= i; ++k)
+      block(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) -=
+          product(coupling[i].z_nm, responses[k].z_nm);
+  });
+  block.triangularView<Eigen::StrictlyUpper>() = block.transpose();
   tip.compute(at_least(block, o.tip_precision));
 }
 
@@ -212,15 +221,8 @@ void Preconditioner::factor(const Objective& o, const Unknowns& at, const Object
   }
   few.has_mixture = o.sem && o.fit_mixture;
   if (few.has_mixture) {
-    Eigen::MatrixXd block = Eigen::MatrixXd::Zero(2, 2);
-    for (std::size_t i = 0; i < s.sem->information.size(); ++i) {
-      const double q = s.sem->information.data()[i],
-                   gain = s.sem->simulated.data()[i] - at.mixture.back();
-      block(0, 0) += q * gain * gain;
-      block(0, 1) += q * gain;
-      block(1, 1) += q;
-    }
-    block(1, 0) = block(0, 1);
+    const auto precision = o.sem->mixture_precision(*s.sem, at.mixture);
+    Eigen::MatrixXd block{{precision[0], precision[1]}, {precision[1], precision[2]}};
     block.diagonal().array() *= 1 + 1e-9;
     few.mixture.compute(block);
   }
@@ -266,12 +268,12 @@ std::vector<Step> Preconditioner::solve(const std::vector<Step>& residuals) cons
   std::vector<Step> out(residuals.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
     out[i].z_nm = std::move(heights[i]);
-    blocks_->solve(residuals[i], out[i]);
+    blocks_->solve(residuals[i], out[i], threads_);
   }
   return out;
 }
 
-void Preconditioner::Blocks::solve(const Step& r, Step& out) const {
+void Preconditioner::Blocks::solve(const Step& r, Step& out, int threads) const {
   if (has_map)
     Eigen::Map<Eigen::VectorXd>(out.map.data(), map_numbers) =
         map.solve(Eigen::Map<const Eigen::VectorXd>(r.map.data(), map_numbers));
@@ -280,13 +282,32 @@ void Preconditioner::Blocks::solve(const Step& r, Step& out) const {
         mixture.solve(Eigen::Map<const Eigen::Vector2d>(r.mixture.data()));
   if (!has_tip) return;
   Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(r.tip.data(), tip_numbers);
-  for (int k = 0; k < tip_numbers; ++k) right(k) -= product(follows[k], r.z_nm);
-  const Eigen::VectorXd change = tip.solve(right);
-  for (int k = 0; k < tip_numbers; ++k) {
-    out.tip[k] = change(k);
-    for (std::size_t i = 0; i < out.z_nm.size(); ++i)
-      out.z_nm.data()[i] -= change(k) * follows[k].data()[i];
-  }
+  constexpr std::size_t chunks = 16;  // whatever the threads, so that sums are the same
+  const std::size_t samples = out.z_nm.size();
+  const auto end_of = [&](std::size_t chunk) { return (chunk + 1) * samples / chunks; };
+  std::array<TipChange, chunks> sums{};
+  parallel_for(chunks, threads, [&](std::size_t chunk, int) {
+    TipChange sum{};
+    for (std::size_t i = chunk * samples / chunks; i < end_of(chunk); ++i) {
+      const double value = r.z_nm.data()[i];
+      const float* const follow = &follows[i * tip_numbers];
+      for (int k = 0; k < tip_numbers; ++k) sum[k] += value * double{follow[k]};
+    }
+    sums[chunk] = sum;
+  });
+  for (const TipChange& sum : sums)
+    for (int k = 0; k < tip_numbers; ++k) right(k) -= sum[k];
+  const Eigen::VectorXd solved = tip.solve(right);
+  std::copy_n(solved.data(), tip_numbers, out.tip.begin());
+  const TipChange change = out.tip;
+  parallel_for(chunks, threads, [&](std::size_t chunk, int) {
+    for (std::size_t i = chunk * samples / chunks; i < end_of(chunk); ++i) {
+      const float* const follow = &follows[i * tip_numbers];
+      double sum = 0;
+      for (int k = 0; k < tip_numbers; ++k) sum += change[k] * double{follow[k]};
+      out.z_nm.data()[i] -= sum;
+    }
+  });
 }
 
 Preconditioner::Variances Preconditioner::variances(const CurvaturePrior& prior, int draws,

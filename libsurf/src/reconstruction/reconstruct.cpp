@@ -26,6 +26,9 @@ constexpr double coarsely = 20;
 // white.
 constexpr double rough_looseness = 3;
 constexpr double worth_loosening = 1.3;
+// A model of pixels places a wall to this fraction of one.
+constexpr double edge_doubt_px = 0.15;
+constexpr double soft_px = 1;
 
 void check(const AfmData* afm, const SemData* sem, const ReconstructionOptions& o) {
   if (!afm && !sem)
@@ -101,6 +104,20 @@ ResidualReport judge(const Grid<double>& white, const Mask& used) {
   return r;
 }
 
+/// The root mean square of a discrepancy over the standard deviation of an image.
+double share_of(const Grid<double>& discrepancy, const Grid<double>& image, const Mask& used) {
+  double n = 0, sum = 0, squares = 0, off = 0;
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    if (!used.includes(i)) continue;
+    n += 1;
+    sum += image.data()[i];
+    squares += image.data()[i] * image.data()[i];
+    off += discrepancy.data()[i] * discrepancy.data()[i];
+  }
+  const double variance = n > 0 ? squares / n - sum / n * (sum / n) : 0;
+  return variance > 0 ? std::sqrt(off / n / variance) : 0;
+}
+
 /// The state of a running reconstruction.
 class Work {
  public:
@@ -135,6 +152,7 @@ class Work {
     objective_.fit_tip = afm && sem && options.refine_tip &&
                          options.method == ReconstructionMethod::gauss_newton &&
                          objective_.afm->tip_can_change();
+    rough_ = options.rough_ground;
     curvature_ = options.curvature_prior_per_nm > 0 ? options.curvature_prior_per_nm : 1e-3;
     set_prior(curvature_);
   }
@@ -294,8 +312,10 @@ class Work {
     return whiten(s.afm->residual, afm_->noise, objective_.afm->used());
   }
   Grid<double> sem_white(const Objective::State& s) const {
-    return whiten(objective_.sem->image(), s.sem->simulated, objective_.sem->noise(),
-                  objective_.sem->used());
+    Grid<double> explained = objective_.sem->image();
+    for (std::size_t i = 0; i < s.sem->discrepancy.size(); ++i)
+      explained.data()[i] -= s.sem->discrepancy.data()[i];
+    return whiten(explained, s.sem->simulated, objective_.sem->noise(), objective_.sem->used());
   }
 
   void add_warnings(Reconstruction& out) const {
@@ -326,6 +346,34 @@ class Work {
             cut(z)};
   }
 
+  /// Adds to the deviations what no draw contains: a tilt of the whole, and a displacement of
+  /// walls.
+  void add_common_doubts(Reconstruction& out) const {
+    const Grid<double> soft = cut(GaussianBasis(soft_px, options_.threads).sum(at_.z_nm));
+    const int w = soft.width(), h = soft.height();
+    double middle_x = 0, middle_y = 0;
+    if (afm_) {
+      middle_x = afm_->image.x_nm(afm_->image.z_nm.width() / 2);
+      middle_y = afm_->image.y_nm(afm_->image.z_nm.height() / 2);
+    }
+    for (int y = 0; y < h; ++y)
+      for (int x = 0; x < w; ++x) {
+        double square = out.deviation_nm(x, y) * out.deviation_nm(x, y);
+        if (afm_) {
+          const Point2 p = at_.surface_to_afm({out.surface.x_nm(x), out.surface.y_nm(y)});
+          square += std::pow(afm_->level_doubt.x * (p.x - middle_x), 2) +
+                    std::pow(afm_->level_doubt.y * (p.y - middle_y), 2);
+        }
+        if (sem_ && x > 0 && y > 0 && x + 1 < w && y + 1 < h)
+          square +=
+              0.25 *
+              (edge_doubt_px * edge_doubt_px + options_.place_doubt_px * options_.place_doubt_px) *
+              (std::pow(soft(x + 1, y) - soft(x - 1, y), 2) +
+               std::pow(soft(x, y + 1) - soft(x, y - 1), 2));
+        out.deviation_nm(x, y) = std::sqrt(square);
+      }
+  }
+
   Reconstruction result() {
     Reconstruction out;
     out.surface = cut_field(at_.z_nm);
@@ -349,12 +397,18 @@ class Work {
     if (s.sem) {
       out.simulated_sem = cut(s.sem->simulated);
       out.sem_residual = cut(sem_white(s));
+      if (!s.sem->discrepancy.empty()) {
+        out.sem_discrepancy = cut(s.sem->discrepancy);
+        out.sem_discrepancy_share =
+            share_of(s.sem->discrepancy, s.sem->simulated, objective_.sem->used());
+      }
     }
     if (options_.uncertainty) {
       const Posterior p =
           posterior(objective_, at_, options_.probes, options_.seed, options_.threads, precision(),
                     options_.watch.part(share_of_scales, 1));
       out.deviation_nm = cut(p.deviation_nm);
+      add_common_doubts(out);
       out.data_support = cut(p.data_support);
     }
     return out;

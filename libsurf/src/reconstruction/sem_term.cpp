@@ -4,7 +4,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "afm/normal_numbers.h"
+#include "gaussian_basis.h"
+
 namespace surf::reconstruction {
+namespace {
+
+constexpr double soft_px = 1.5;  // over which grey levels are averaged to tell their noise
+
+}  // namespace
 
 SemTerm::SemTerm(const SemData& data, const SurfaceFrame& frame, int left, int below, int threads)
     : model_(data.model), frame_(frame), noise_(data.noise),
@@ -18,6 +26,21 @@ SemTerm::SemTerm(const SemData& data, const SurfaceFrame& frame, int left, int b
       used_(x + left, y + below) = 1;
       ++used_pixels_;
     }
+  if (data.discrepancy.empty()) return;
+  std::vector<SemDiscrepancy> parts;
+  for (const SemDiscrepancy& given : data.discrepancy) {
+    parts.push_back({Grid<double>(frame.width, frame.height), given.correlation_px});
+    for (int y = 0; y < given.deviation.height(); ++y)
+      for (int x = 0; x < given.deviation.width(); ++x)
+        parts.back().deviation(x + left, y + below) = given.deviation(x, y);
+  }
+  discrepancy_.emplace(parts);
+  // By the image itself, so that one factor does for all surfaces.
+  const Grid<double> soft = GaussianBasis(soft_px, threads).sum(image_);
+  Grid<double> weight(frame.width, frame.height);
+  for (std::size_t i = 0; i < weight.size(); ++i)
+    if (used_.data()[i]) weight.data()[i] = 1 / noise_.variance(soft.data()[i]);
+  factor_ = discrepancy_->factor(weight);
 }
 
 Grid<double> SemTerm::mixed(const ModelImages& images, const std::vector<double>& mixture) const {
@@ -31,8 +54,27 @@ SemTerm::State SemTerm::evaluate(const Grid<double>& z, const std::vector<double
   State s;
   s.linear = model_->linearize(frame_.field(z), options_);
   s.simulated = mixed(s.linear->images(), mixture);
-  s.value = -log_likelihood(image_, s.simulated, noise_, used_, &s.pull, &s.information);
+  if (!discrepancy_) {
+    s.value = -log_likelihood(image_, s.simulated, noise_, used_, &s.pull, &s.information);
+    for (double& p : s.pull.data()) p = -p;
+    return s;
+  }
+  Grid<double> residual(frame_.width, frame_.height), explained = image_, left = residual;
+  for (std::size_t i = 0; i < residual.size(); ++i)
+    if (used_.data()[i]) residual.data()[i] = image_.data()[i] - s.simulated.data()[i];
+  Discrepancy::Factor::Fit fit = factor_->fit(residual);
+  for (std::size_t i = 0; i < explained.size(); ++i) explained.data()[i] -= fit.field.data()[i];
+  s.value =
+      fit.penalty - log_likelihood(explained, s.simulated, noise_, used_, &s.pull, &s.information);
   for (double& p : s.pull.data()) p = -p;
+  for (std::size_t i = 0; i < left.size(); ++i)
+    if (used_.data()[i])
+      left.data()[i] =
+          (residual.data()[i] - fit.field.data()[i]) / noise_.variance(s.simulated.data()[i]);
+  // The fit follows the simulated pixels.
+  const Grid<double> through = factor_->spread(left, fit);
+  for (std::size_t i = 0; i < through.size(); ++i) s.pull.data()[i] += through.data()[i];
+  s.discrepancy = std::move(fit.field);
   return s;
 }
 
@@ -73,6 +115,51 @@ Grid<double> SemTerm::change(const State& s, const std::vector<double>& mixture,
   for (std::size_t i = 0; i < out.size(); ++i)
     out.data()[i] += mixture_change[0] * (s.simulated.data()[i] - mixture[channels_]);
   return out;
+}
+
+Grid<double> SemTerm::precision(const State& s, const Grid<double>& change) const {
+  if (factor_) return factor_->precision(change);
+  Grid<double> out = change;
+  for (std::size_t i = 0; i < out.size(); ++i) out.data()[i] *= s.information.data()[i];
+  return out;
+}
+
+std::array<double, 3> SemTerm::mixture_precision(const State& s,
+                                                 const std::vector<double>& mixture) const {
+  std::array<double, 3> out{};
+  for (int c = 0; c < 2; ++c) {
+    Grid<double> change(frame_.width, frame_.height);
+    for (std::size_t i = 0; i < change.size(); ++i)
+      change.data()[i] = c == 0 ? s.simulated.data()[i] - mixture[channels_] : 1;
+    const Grid<double> weighed = precision(s, change);
+    for (std::size_t i = 0; i < change.size(); ++i) {
+      if (c == 0) out[0] += weighed.data()[i] * change.data()[i];
+      if (c == 0) out[1] += weighed.data()[i];
+      else out[2] += weighed.data()[i];
+    }
+  }
+  return out;
+}
+
+Grid<double> SemTerm::draw_precision(const State& s, std::uint64_t seed) const {
+  NormalNumbers normal(seed, 1);
+  Grid<double> w(frame_.width, frame_.height);
+  for (std::size_t i = 0; i < w.size(); ++i)
+    w.data()[i] = std::sqrt(s.information.data()[i]) * normal();
+  if (!factor_) return w;
+  const Grid<double> field = factor_->draw(seed, 4);
+  for (std::size_t i = 0; i < w.size(); ++i)
+    w.data()[i] =
+        s.information.data()[i] > 0 ? w.data()[i] / s.information.data()[i] + field.data()[i] : 0;
+  return factor_->precision(w);
+}
+
+std::vector<double> SemTerm::discrepancy_ratios(const State& s, std::uint64_t seed) const {
+  if (!discrepancy_) return {};
+  Grid<double> residual(frame_.width, frame_.height);
+  for (std::size_t i = 0; i < residual.size(); ++i)
+    if (used_.data()[i]) residual.data()[i] = image_.data()[i] - s.simulated.data()[i];
+  return discrepancy_->ratios(*factor_, residual, seed);
 }
 
 SemTerm::Near SemTerm::near(const State& s, const std::vector<double>& mixture) const {

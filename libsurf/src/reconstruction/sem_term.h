@@ -3,9 +3,11 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 #include "surf/core/mask.h"
 
+#include "discrepancy.h"
 #include "surf/reconstruction/reconstruct.h"
 #include "surface_frame.h"
 
@@ -29,6 +31,7 @@ class SemTerm {
     Grid<double> pull;         ///< derivative of the term by each simulated pixel, 0 where not used
     Grid<double> information;  ///< expected second derivative by each simulated pixel
     double value = 0;
+    Grid<double> discrepancy;  ///< the most likely one; empty without
   };
 
   /// A sparse approximation of J that is exact for waves of 12 samples along x and y: a pixel
@@ -58,6 +61,18 @@ class SemTerm {
                       const Grid<double>& dz_nm, const MixtureChange& mixture_change,
                       const Near* near = nullptr) const;
 
+  /// The product of the second derivative by the simulated pixels, in which the discrepancy is
+  /// eliminated, and a change of them.
+  Grid<double> precision(const State& state, const Grid<double>& change) const;
+  /// The same between the two numbers of a change of the mixture: first with first, first with
+  /// second, second with second.
+  std::array<double, 3> mixture_precision(const State& state,
+                                          const std::vector<double>& mixture) const;
+  /// A draw of `precision`: normal, with that covariance.
+  Grid<double> draw_precision(const State& state, std::uint64_t seed) const;
+  /// See Discrepancy::ratios.
+  std::vector<double> discrepancy_ratios(const State& state, std::uint64_t seed) const;
+
   std::size_t channels() const { return channels_; }
   const Grid<double>& image() const { return image_; }  ///< on the surface's samples
   const Mask& used() const { return used_; }
@@ -75,6 +90,8 @@ class SemTerm {
   Grid<double> image_;
   Mask used_;
   std::int64_t used_pixels_ = 0;
+  std::optional<Discrepancy> discrepancy_;
+  std::shared_ptr<const Discrepancy::Factor> factor_;
 };
 
 }  // namespace surf::reconstruction

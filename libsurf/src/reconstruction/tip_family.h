@@ -9,14 +9,17 @@
 namespace surf::reconstruction {
 
 /// A change of the tip: logarithms of the factors of its slope, at places from the apex to the rim,
-/// linearly interpolated. The places are denser towards the apex, which touches most. So every
-/// change of a tip gives a tip: 0 at the apex, and falling outwards where the original tip falls.
-inline constexpr int tip_numbers = 7;
+/// linearly interpolated. The places are denser towards the apex, which touches most. At each place
+/// there are five numbers, for waves around the axis: the same in all directions, a tip that leans
+/// (cosine and sine of the azimuth), one that is wider along one axis (of twice the azimuth, times
+/// `second_wave`). So every change of a tip gives a tip: 0 at the apex, and falling outwards where
+/// the original tip falls.
+inline constexpr int tip_places = 7, tip_waves = 5, tip_numbers = tip_places * tip_waves;
+inline constexpr double second_wave = 0.75;
 using TipChange = std::array<double, tip_numbers>;
 
 /// Tips that differ from a given tip by a TipChange. The slope at a distance from the apex is that
-/// of the median over all directions; the heights in all directions change there by the same
-/// factor.
+/// of the median over all directions; heights change by the factor that this median changes by.
 class TipFamily {
  public:
   TipFamily() = default;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "surf/core/error.h"
+#include "surf/core/random.h"
 
 namespace surf {
 namespace {
@@ -66,6 +67,39 @@ TEST(FitPolynomial, OfDegreeZeroIsTheMean) {
   HeightField f = field_of(3, 2, tilted);
   f.z_nm.data() = {1, 2, 3, 4, 5, 9};
   EXPECT_NEAR(fit_polynomial(f, 0)(2, 1), 4, 1e-12);
+}
+
+// Heights that go together over a few samples: the slopes' errors over those stated have a mean
+// square of 1.
+TEST(DoubtOfPlane, IsHowFarSlopesAreOff) {
+  double square = 0;
+  constexpr int scans = 60, size = 64, soft = 3;
+  for (std::uint64_t scan = 0; scan < scans; ++scan) {
+    RandomStream random(8, scan, 0);
+    Grid<double> white(size + soft, size + soft);
+    for (double& v : white.data()) v = random.uniform() - 0.5;
+    const HeightField f = field_of(size, size, [](double, double) { return 0.0; });
+    HeightField rough = f;
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x)
+        for (int v = 0; v < soft; ++v)
+          for (int u = 0; u < soft; ++u) rough.z_nm(x, y) += white(x + u, y + v);
+    const SlopeDoubt doubt = doubt_of_plane(rough);
+    const Plane plane = fit_plane(rough);
+    square += 0.5 * (std::pow(plane.slope_x / doubt.x, 2) + std::pow(plane.slope_y / doubt.y, 2));
+  }
+  EXPECT_GT(square / scans, 0.5);
+  EXPECT_LT(square / scans, 1.6);
+}
+
+TEST(DoubtOfPlane, IsNoneWhereOneBlockHoldsEverything) {
+  const HeightField f = field_of(40, 40, tilted);
+  Mask use(40, 40, 0);
+  for (int y = 2; y < 8; ++y)
+    for (int x = 2; x < 8; ++x) use(x, y) = 1;
+  const SlopeDoubt doubt = doubt_of_plane(f, use);
+  EXPECT_NEAR(doubt.x, 0, 1e-9);
+  EXPECT_NEAR(doubt.y, 0, 1e-9);
 }
 
 TEST(FitPlane, RefusesSamplesThatDetermineNone) {

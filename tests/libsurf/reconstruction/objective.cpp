@@ -87,6 +87,20 @@ TEST(Objective, GradientIsThatOfCentralDifferencesWithEachImageAndBoth) {
   }
 }
 
+TEST(Objective, GradientHoldsWithADiscrepancy) {
+  test::SmallScene scene;
+  scene.sem.discrepancy = usual_discrepancy(scene.sem.image, 0.3);
+
+  const Objective o = make_objective(scene, Images::sem);
+  const Unknowns at = start_at(scene, o);
+  for (const std::uint64_t seed : {1, 2, 3}) expect_gradient(o, at, random_step(o, seed), 3e-3);
+  for (int k = 0; k < 2; ++k) {
+    Step s = o.zero();
+    s.mixture[k] = 1;
+    expect_gradient(o, at, s, 1e-4);
+  }
+}
+
 TEST(Objective, GradientHoldsForEachNumberOfMapMixtureAndTipAlone) {
   const test::SmallScene scene;
   const Objective o = make_objective(scene, Images::both);

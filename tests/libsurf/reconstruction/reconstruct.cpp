@@ -34,6 +34,44 @@ TEST(Reconstruct, BothImagesGiveTheSurfaceFarBetterThanErosion) {
   EXPECT_NEAR(r.scales.back().sem_residual.deviation, 1, 0.1);
 }
 
+// An image that another model made: brighter where it is bright, by 8 % of that, and a tip that was
+// fitted. Pooled over scenes.
+TEST(Reconstruct, DeviationsHoldWhereTheModelIsWrong) {
+  double pixels = 0, two = 0, walls = 0, two_on_walls = 0;
+  for (const std::uint64_t seed : {5, 6, 7, 8}) {
+    test::SmallScene scene(seed, 64, 48);
+    for (double& v : scene.sem.image.values.data()) v += 0.08 * std::pow(v - 120, 2) / 100;
+    scene.sem.discrepancy = usual_discrepancy(scene.sem.image, 0.05);
+    ReconstructionOptions o;
+    o.refine_tip = true;
+    const Reconstruction r = reconstruct(&scene.afm, &scene.sem, o);
+    EXPECT_LT(scene.rms_error(r.surface), 0.6 * scene.rms_error(r.start));
+    EXPECT_FALSE(r.sem_discrepancy.empty());
+    const Grid<double>& truth = scene.truth.z_nm;
+    for (int y = 1; y + 1 < truth.height(); ++y)
+      for (int x = 1; x + 1 < truth.width(); ++x) {
+        const bool within = std::abs(r.surface.z_nm(x, y) - truth(x, y)) < 2 * r.deviation_nm(x, y);
+        pixels += 1, two += within;
+        const double slope =
+            std::hypot(truth(x + 1, y) - truth(x - 1, y), truth(x, y + 1) - truth(x, y - 1)) / 20;
+        if (slope > 0.577) walls += 1, two_on_walls += within;
+      }
+  }
+  EXPECT_GT(two / pixels, 0.9);
+  EXPECT_GT(two_on_walls / walls, 0.85);
+}
+
+TEST(Reconstruct, DeviationsKnowThatTheScanMayBeTilted) {
+  test::SmallScene scene;
+  const Reconstruction level = reconstruct(&scene.afm, &scene.sem);
+  scene.afm.level_doubt = {0.02, 0};
+  const Reconstruction tilted = reconstruct(&scene.afm, &scene.sem);
+  const int w = level.deviation_nm.width() - 1, y = level.deviation_nm.height() / 2;
+  EXPECT_GT(tilted.deviation_nm(w, y), level.deviation_nm(w, y) + 2);  // 5 nm at the border
+  EXPECT_NEAR(tilted.deviation_nm(w / 2, y), level.deviation_nm(w / 2, y), 0.5);
+  EXPECT_EQ(tilted.surface.z_nm, level.surface.z_nm);
+}
+
 TEST(Reconstruct, ErrorIsWithinTwiceWhatNoiseLeaves) {
   const test::SmallScene scene;
   const double floor = noise_floor_nm(&scene.afm, &scene.sem, scene.truth, quick());

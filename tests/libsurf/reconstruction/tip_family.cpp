@@ -24,8 +24,8 @@ TEST(TipFamily, NoChangeIsTheSameTip) {
 
 TEST(TipFamily, AFactorForAllSlopesIsOneForAllHeights) {
   const Tip tip = cone();
-  TipChange all;
-  all.fill(std::log(1.25));
+  TipChange all{};
+  for (int place = 0; place < tip_places; ++place) all[place * tip_waves] = std::log(1.25);
   const Tip changed = TipFamily(tip).changed(tip, all);
   for (std::size_t i = 0; i < tip.z_nm.size(); ++i)
     ASSERT_NEAR(changed.z_nm.data()[i], 1.25 * tip.z_nm.data()[i], 1e-9);
@@ -49,7 +49,7 @@ TEST(TipFamily, NumbersCountFromTheApexOutwards) {
   const Tip tip = cone();
   const TipFamily family(tip);
   TipChange inner{}, outer{};
-  inner.front() = outer.back() = 0.5;
+  inner.front() = outer[(tip_places - 1) * tip_waves] = 0.5;
   const int x = tip.apex_x + 1, rim = tip.z_nm.width() - 1, y = tip.apex_y;
   EXPECT_LT(family.changed(tip, inner).z_nm(x, y), 1.1 * tip.z_nm(x, y));
   EXPECT_NEAR(family.changed(tip, inner).z_nm(rim, y) / tip.z_nm(rim, y), 1, 0.02);
@@ -57,10 +57,33 @@ TEST(TipFamily, NumbersCountFromTheApexOutwards) {
   EXPECT_LT(family.changed(tip, outer).z_nm(rim, y), 1.03 * tip.z_nm(rim, y));
 }
 
+TEST(TipFamily, WavesLeanAndWiden) {
+  const Tip tip = conical_tip(50, 0.5, {10, 10, 21, 21});
+  const TipFamily family(tip);
+  TipChange lean{}, wide{}, aslant{};
+  for (int place = 0; place < tip_places; ++place)
+    lean[place * tip_waves + 1] = wide[place * tip_waves + 3] = aslant[place * tip_waves + 4] = 0.4;
+  const Tip leaning = family.changed(tip, lean), widened = family.changed(tip, wide),
+            slanted = family.changed(tip, aslant);
+  const int a = tip.apex_x;
+  const auto factor = [&](const Tip& t, int x, int y) {
+    return t.z_nm(a + x, a + y) / tip.z_nm(a + x, a + y);
+  };
+  EXPECT_NEAR(factor(leaning, 6, 0), std::exp(0.4), 1e-9);
+  EXPECT_NEAR(factor(leaning, -6, 0), std::exp(-0.4), 1e-9);
+  EXPECT_NEAR(factor(leaning, 0, 6), 1, 1e-9);
+  EXPECT_NEAR(factor(widened, 6, 0), std::exp(0.4 * second_wave), 1e-9);
+  EXPECT_NEAR(factor(widened, -6, 0), std::exp(0.4 * second_wave), 1e-9);
+  EXPECT_NEAR(factor(widened, 0, 6), std::exp(-0.4 * second_wave), 1e-9);
+  EXPECT_NEAR(factor(slanted, 4, 4), std::exp(0.4 * second_wave), 1e-9);
+  EXPECT_NEAR(factor(slanted, 4, -4), std::exp(-0.4 * second_wave), 1e-9);
+}
+
 TEST(TipFamily, DerivativesAreThoseOfCentralDifferences) {
   const Tip tip = cone();
   const TipFamily family(tip);
-  const TipChange at{0.3, -0.2, 0.1, 0.4, -0.5, 0.2, -0.1};
+  TipChange at;
+  for (int k = 0; k < tip_numbers; ++k) at[k] = 0.3 * std::sin(1.7 * k);
   std::vector<TipChange> by_change;
   family.changed(tip, at, &by_change);
   ASSERT_EQ(by_change.size(), tip.z_nm.size());

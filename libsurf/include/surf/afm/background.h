@@ -27,6 +27,15 @@ struct Plane {
 /// than three samples are left or they all lie on one line.
 Plane fit_plane(const HeightField& field, const Mask& use = {});
 
+/// Standard errors of the slopes of `fit_plane`, nm per nm.
+struct SlopeDoubt {
+  double x = 0, y = 0;
+};
+/// Estimates them by a jackknife over 16 blocks (Efron 1982, doi:10.1137/1.9781611970319): so they
+/// hold for heights that go together over distances up to a block's. Blocks without which no plane
+/// is determined do not count.
+SlopeDoubt doubt_of_plane(const HeightField& field, const Mask& use = {});
+
 /// Fits a polynomial with all terms x^i y^j, i + j <= degree (0 to 6), and evaluates it at every
 /// sample, also in holes. Far from the samples used it is meaningless. Throws InvalidInput if the
 /// samples do not determine the polynomial, UsageError for another degree.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "surf/afm/background.h"
 #include "surf/afm/noise.h"
 #include "surf/afm/tip.h"
 #include "surf/core/affine.h"
@@ -27,7 +28,22 @@ struct AfmData {
   AfmNoise noise;
   /// The dilation is computed with this many samples per pitch (thesis, appendix C.3), in [1, 8].
   int upsample = 3;
+  /// Standard errors of the slopes that were taken off the scan, nm per nm: the surface may be
+  /// tilted by as much.
+  SlopeDoubt level_doubt = {};
 };
+
+/// What the model of an SEM image may be off by beside its noise: other physics, another detector,
+/// contamination, gains that drift. A Gaussian field of mean 0.
+struct SemDiscrepancy {
+  Grid<double> deviation;     ///< its standard deviation at each pixel, in the image's unit, >= 0
+  double correlation_px = 4;  ///< its correlation length, 1 to 1000; rounded to whole pixels
+};
+
+/// A discrepancy that grows with how far a pixel stands out of the image: `share` of its distance
+/// from the median grey level, over some pixels, and half of that as a gain that drifts over the
+/// image. Throws InvalidInput.
+std::vector<SemDiscrepancy> usual_discrepancy(const PlacedImage& image, double share);
 
 /// An SEM image and its imaging model: image = sum of gain * channel of the model + offset + noise.
 struct SemData {
@@ -37,6 +53,9 @@ struct SemData {
   double offset = 0;
   SemNoise noise;
   Affine sem_to_afm;
+  /// Independent of each other, in the order of their correlation lengths; none: the model is
+  /// right.
+  std::vector<SemDiscrepancy> discrepancy = {};
 };
 
 enum class ReconstructionMethod {
@@ -63,6 +82,14 @@ struct ReconstructionOptions {
   /// 0: 1e-3, which is 2e-3 at the end. On rough ground, which is curved everywhere, a larger value
   /// is used: three times the curvature that the surface itself makes most likely.
   double curvature_prior_per_nm = 0;
+
+  /// The specimen is known to bend everywhere: the prior is replaced from the beginning, not only
+  /// where a surface made under the usual one bends as much.
+  bool rough_ground = false;
+
+  /// What walls may be displaced by, in pixels, because the place of the images is not certain;
+  /// counts in the deviations alone.
+  double place_doubt_px = 0;
 
   bool refine_transform = true;    ///< the map is fitted together with the surface
   bool refine_calibration = true;  ///< the offset and a common factor of all gains are fitted, too
@@ -139,13 +166,16 @@ struct Reconstruction {
 
   /// On the AFM's samples; holes where the surface does not reach. Empty without AFM.
   HeightField simulated_afm;
-  Grid<double> afm_residual;   ///< whitened
-  Mask afm_used;               ///< 1: the pixel contributes
-  Grid<double> simulated_sem;  ///< on the surface's samples. Empty without SEM
-  Grid<double> sem_residual;   ///< whitened
+  Grid<double> afm_residual;     ///< whitened
+  Mask afm_used;                 ///< 1: the pixel contributes
+  Grid<double> simulated_sem;    ///< on the surface's samples. Empty without SEM
+  Grid<double> sem_residual;     ///< whitened, with the discrepancy taken off
+  Grid<double> sem_discrepancy;  ///< what the model is off by, most likely. Empty without
+  /// Its root mean square over the standard deviation of the simulated image.
+  double sem_discrepancy_share = 0;
 
-  /// Posterior standard deviation of each height, linearised; includes the bias by the prior. Empty
-  /// if not wanted.
+  /// Posterior standard deviation of each height, linearised; includes the bias by the prior, what
+  /// the surface may be tilted by, and where its walls may be. Empty if not wanted.
   Grid<double> deviation_nm;
   /// The data that support each height. 1: the tip touched it. 2: the SEM image at least halves the
   /// variance of the height. 3: both. 0: only its neighbours and the prior.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "surf/afm/background.h"
 #include "surf/afm/certainty.h"
 #include "surf/afm/noise_estimate.h"
 #include "surf/afm/tip.h"
@@ -31,17 +32,21 @@ void describe(ParameterVisitor& visit, AfmPreparationOptions& options);
 
 /// A prepared scan, with everything found on the way.
 struct PreparedAfm {
-  HeightField image;    ///< levelled; the substrate, if one was found, is at 0
-  double tilt_deg = 0;  ///< tilt that was taken off
+  HeightField image;       ///< levelled; the substrate, if one was found, is at 0
+  double tilt_deg = 0;     ///< tilt that was taken off
+  SlopeDoubt level_doubt;  ///< of the tilt that was taken off; 0: none was
   AfmNoise noise;
+  bool rough_ground = false;  ///< no plane holds much of the scan: there are no plateaus
   std::optional<NoiseEstimate> noise_estimate;  ///< absent: the noise was given
   Tip tip;  ///< at the image's pitch; its doubt comes from the search or from its file
   bool tip_given = false;
-  bool tip_round = false;             ///< the tip was assumed to be round
-  double tip_threshold_nm = 0;        ///< threshold of the blind reconstruction; else 0
-  CertaintyMap certainty;             ///< also holds the eroded scan
-  std::vector<std::string> notes;     ///< what was done, for the user
-  std::vector<std::string> warnings;  ///< possible mistakes, and what to do about them
+  bool tip_round = false;                 ///< the tip was assumed to be round
+  bool tip_from_sem = false;              ///< it was found with the SEM image (find_tip_by_sem)
+  double tip_threshold_nm = 0;            ///< threshold of the blind reconstruction; else 0
+  CertaintyMap certainty;                 ///< also holds the eroded scan
+  std::vector<std::string> notes;         ///< what was done, for the user
+  std::vector<std::string> warnings;      ///< possible mistakes, and what to do about them
+  std::vector<std::string> tip_warnings;  ///< the same of the tip, which another step may replace
 
   const HeightField& eroded() const { return certainty.surface; }
 };

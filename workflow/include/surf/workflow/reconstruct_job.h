@@ -29,7 +29,10 @@ struct ReconstructJob {
   /// Required without a scan; absent: fitted with the scan.
   std::optional<GivenCalibration> calibration;
   std::optional<SemNoise> sem_noise;  ///< absent: estimated
-  int upsample = 3;                   ///< upsampling of the scan, see AfmData
+  /// What the model of SEM images may be off by, as a share of the image's contrast: see
+  /// `usual_discrepancy`. 0: it is right.
+  double model_error = 0.05;
+  int upsample = 3;  ///< upsampling of the scan, see AfmData
   /// Fit the tip together with the surface; absent: if the tip was found blindly.
   std::optional<bool> refine_tip;
   /// its threads are used for all steps; `refine_tip` above replaces its own
@@ -45,18 +48,29 @@ struct ReconstructJob {
 /// The parameters of the inputs that are present, of the options, and of the output.
 void describe(ParameterVisitor& visit, ReconstructJob& job);
 
-/// The difference between a surface and the true one. The mean difference is taken off, because a
+/// How a part of a surface agrees with the truth.
+struct RegionReport {
+  /// "flat": no slope of 6 degrees within 3 pixels; "wall": steeper than 30 degrees; "foot": beside
+  /// a wall; "untouched": the tip did not touch it. The true surface says what is what.
+  std::string name;
+  std::int64_t pixels = 0;
+  double rms_nm = 0, stated_nm = 0;       ///< error, and posterior standard deviation
+  double coverage_1 = 0, coverage_2 = 0;  ///< as in TruthReport
+};
+
+/// The difference between a surface and the true one. The median difference is taken off, because a
 /// scan does not know where 0 is.
 struct TruthReport {
   double rms_nm = 0;
   double start_rms_nm = 0;  ///< rms_nm of the eroded scan
-  double offset_nm = 0;     ///< mean difference
+  double offset_nm = 0;     ///< median difference
   double plane_rms_nm = 0;  ///< rms with the best plane taken off
   double coverage_1 = 0,
          /// Shares of pixels within one and two posterior standard deviations; 0 if these are
          /// unknown.
       coverage_2 = 0;
   std::int64_t pixels = 0;
+  std::vector<RegionReport> regions;  ///< those with pixels; none without deviations
 };
 
 enum class ReconstructionVerdict {

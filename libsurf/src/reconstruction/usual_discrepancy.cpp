@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "gaussian_basis.h"
+#include "surf/core/error.h"
+#include "surf/reconstruction/reconstruct.h"
+
+namespace surf {
+namespace {
+
+using namespace reconstruction;
+
+constexpr double soft_px = 1.5;          // electrons' noise is not contrast
+constexpr double usual_contrast = 0.15;  // of the image's, where nothing stands out
+constexpr double fine_px = 4, wide_px = 48;
+constexpr double share_of_drift = 0.5;
+
+}  // namespace
+
+std::vector<SemDiscrepancy> usual_discrepancy(const PlacedImage& image, double share) {
+  validate(image, "SEM image");
+  if (!(share >= 0 && share <= 1))
+    throw InvalidInput("model error", "it is not a share from 0 to 1", "0.05 is usual");
+  if (share == 0) return {};
+  Grid<double> known = image.values;
+  std::vector<double> levels;
+  for (int y = 0; y < known.height(); ++y)
+    for (int x = 0; x < known.width(); ++x)
+      if (image.is_valid(x, y)) levels.push_back(known(x, y));
+  if (levels.empty()) return {};
+  const auto middle = levels.begin() + static_cast<std::ptrdiff_t>(levels.size() / 2);
+  std::nth_element(levels.begin(), middle, levels.end());
+  const double median = *middle;
+  for (int y = 0; y < known.height(); ++y)
+    for (int x = 0; x < known.width(); ++x)
+      if (!image.is_valid(x, y)) known(x, y) = median;
+  const GaussianBasis soft(soft_px, 1);
+  Grid<double> contrast = soft.sum(known);
+  for (double& c : contrast.data()) c = std::abs(c - median);
+  Grid<double> squares = contrast;
+  double mean = 0;
+  for (double& c : squares.data()) c *= c, mean += c / static_cast<double>(squares.size());
+  squares = soft.sum(squares);
+  SemDiscrepancy fine{squares, fine_px}, wide{squares, wide_px};
+  for (std::size_t i = 0; i < squares.size(); ++i) {
+    fine.deviation.data()[i] =
+        share * std::sqrt(squares.data()[i] + usual_contrast * usual_contrast * mean);
+    wide.deviation.data()[i] = share * share_of_drift * (contrast.data()[i] + std::sqrt(mean));
+  }
+  return {std::move(fine), std::move(wide)};
+}
+
+}  // namespace surf

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reconstruction/discrepancy.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "surf/core/error.h"
+#include "surf/core/random.h"
+
+namespace surf::reconstruction {
+namespace {
+
+double normal(RandomStream& random) {
+  return std::sqrt(-2 * std::log(1 - random.uniform())) *
+         std::cos(6.283185307179586 * random.uniform());
+}
+
+struct Case {
+  std::vector<SemDiscrepancy> parts;
+  Grid<double> weight{34, 23};
+
+  Case() {
+    RandomStream random(3, 0, 0);
+    parts.push_back({Grid<double>(34, 23), 3});
+    parts.push_back({Grid<double>(34, 23), 10});
+    for (int y = 0; y < 23; ++y)
+      for (int x = 0; x < 34; ++x) {
+        parts[0].deviation(x, y) = 0.5 + 0.1 * x;
+        parts[1].deviation(x, y) = 2;
+        weight(x, y) = (x + y) % 9 == 0 ? 0 : 1 / (0.5 + random.uniform());
+      }
+  }
+};
+
+double dot(const Grid<double>& a, const Grid<double>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a.data()[i] * b.data()[i];
+  return sum;
+}
+
+// For noise and discrepancy as described, r.Q r is chi-squared with as many degrees as pixels.
+TEST(Discrepancy, PrecisionIsTheInverseOfTheCovariance) {
+  const Case c;
+  const Discrepancy discrepancy(c.parts);
+  const auto factor = discrepancy.factor(c.weight);
+  double pixels = 0, sum = 0;
+  for (const double w : c.weight.data()) pixels += w > 0;
+  constexpr int draws = 200;
+  for (int d = 0; d < draws; ++d) {
+    RandomStream random(11, static_cast<std::uint64_t>(d), 0);
+    Grid<double> r = factor->draw(5, static_cast<std::uint64_t>(d));
+    for (std::size_t i = 0; i < r.size(); ++i)
+      if (c.weight.data()[i] > 0) r.data()[i] += normal(random) / std::sqrt(c.weight.data()[i]);
+    sum += dot(r, factor->precision(r));
+  }
+  const double z = (sum - draws * pixels) / std::sqrt(2 * draws * pixels);
+  EXPECT_LT(std::abs(z), 4);
+}
+
+TEST(Discrepancy, TheLikeliestOneLeavesWhatThePrecisionSays) {
+  const Case c;
+  const Discrepancy discrepancy(c.parts);
+  const auto factor = discrepancy.factor(c.weight);
+  RandomStream random(2, 0, 0);
+  Grid<double> r(34, 23);
+  for (double& v : r.data()) v = 3 * normal(random);
+  const auto fit = factor->fit(r);
+  double left = fit.penalty;
+  Grid<double> count = r;
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    count.data()[i] = c.weight.data()[i] * (r.data()[i] - fit.field.data()[i]);
+    left += 0.5 * count.data()[i] * (r.data()[i] - fit.field.data()[i]);
+  }
+  EXPECT_NEAR(left, 0.5 * dot(r, factor->precision(r)), 1e-9 * left);
+  // At the optimum nothing rises through the fit.
+  for (const double s : factor->spread(count, fit).data()) EXPECT_NEAR(s, 0, 1e-9);
+}
+
+TEST(Discrepancy, DrawsHaveTheDeviationAndTheLengthThatWereAsked) {
+  SemDiscrepancy part{Grid<double>(60, 60, 2.0), 6};
+  const Discrepancy discrepancy({part});
+  const auto factor = discrepancy.factor(Grid<double>(60, 60, 1.0));
+  double square = 0, beside = 0, far = 0, n = 0;
+  for (std::uint64_t d = 0; d < 60; ++d) {
+    const Grid<double> drawn = factor->draw(1, d);
+    for (int y = 0; y < 60; ++y)
+      for (int x = 0; x + 24 < 60; ++x) {
+        square += drawn(x, y) * drawn(x, y);
+        beside += drawn(x, y) * drawn(x + 3, y);
+        far += drawn(x, y) * drawn(x + 24, y);
+        n += 1;
+      }
+  }
+  EXPECT_NEAR(std::sqrt(square / n), 2, 0.15);
+  EXPECT_GT(beside / square, 0.7);
+  EXPECT_LT(std::abs(far / square), 0.1);
+}
+
+TEST(UsualDiscrepancy, GrowsWithContrastAndIsNoneForAModelThatIsRight) {
+  PlacedImage image;
+  image.values = Grid<double>(80, 40, 100);
+  for (int y = 0; y < 40; ++y)
+    for (int x = 38; x < 42; ++x) image.values(x, y) = 300;
+  EXPECT_TRUE(usual_discrepancy(image, 0).empty());
+  const auto parts = usual_discrepancy(image, 0.05);
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_LT(parts[0].correlation_px, parts[1].correlation_px);
+  EXPECT_GT(parts[0].deviation(40, 20), 5);
+  EXPECT_LT(parts[0].deviation(5, 20), 1);
+  EXPECT_THROW(usual_discrepancy(image, 1.5), InvalidInput);
+}
+
+}  // namespace
+}  // namespace surf::reconstruction
