@@ -19,7 +19,6 @@ constexpr int taps = 3;                // splines along one axis that a pixel is
 constexpr int per_part = taps * taps;  // splines of one part
 // So that the splines' squares add up to 1 in the mean: along one axis they are 0.55.
 constexpr double unit_scale = 1 / 0.55;
-constexpr int probes = 8;
 
 /// Values of the three quadratic B-splines about a place that is `t` of the way along its cell.
 std::array<double, taps> splines(double t) {
@@ -222,31 +221,6 @@ Grid<double> Discrepancy::Factor::draw(std::uint64_t seed, std::uint64_t stream)
   Vector c(layout_->coefficients);
   for (double& k : c) k = normal();
   return layout_->field(c);
-}
-
-std::vector<double> Discrepancy::ratios(const Factor& factor, const Grid<double>& residual,
-                                        std::uint64_t seed) const {
-  const Layout& layout = *layout_;
-  Grid<double> weighted = residual;
-  for (std::size_t i = 0; i < weighted.size(); ++i) weighted.data()[i] *= factor.weight_.data()[i];
-  const Vector c = factor.solver_->factor.solve(layout.transpose(weighted));
-  // Diagonal of the inverse, by random signs.
-  Vector own = Vector::Zero(layout.coefficients);
-  NormalNumbers normal(seed, 7);
-  for (int probe = 0; probe < probes; ++probe) {
-    Vector sign(layout.coefficients);
-    for (double& s : sign) s = normal() < 0 ? -1 : 1;
-    own += sign.cwiseProduct(factor.solver_->factor.solve(sign)) / probes;
-  }
-  std::vector<double> out;
-  for (std::size_t p = 0; p < layout.parts.size(); ++p) {
-    const Part& part = layout.parts[p];
-    const int count = part.columns * part.rows;
-    const double square =
-        c.segment(part.first, count).squaredNorm() + own.segment(part.first, count).sum();
-    out.push_back(std::sqrt(std::max(0.0, square / count)));
-  }
-  return out;
 }
 
 }  // namespace surf::reconstruction

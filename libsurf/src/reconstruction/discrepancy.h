@@ -26,11 +26,6 @@ class Discrepancy {
   class Factor;
   std::shared_ptr<const Factor> factor(const Grid<double>& weight) const;
 
-  /// Root mean square of a part's discrepancy over its standard deviation, as the residual and its
-  /// own uncertainty (by random draws) say: 1 if the standard deviation is right.
-  std::vector<double> ratios(const Factor& factor, const Grid<double>& residual,
-                             std::uint64_t seed) const;
-
  private:
   struct Layout;
   std::shared_ptr<const Layout> layout_;

@@ -154,14 +154,6 @@ Grid<double> SemTerm::draw_precision(const State& s, std::uint64_t seed) const {
   return factor_->precision(w);
 }
 
-std::vector<double> SemTerm::discrepancy_ratios(const State& s, std::uint64_t seed) const {
-  if (!discrepancy_) return {};
-  Grid<double> residual(frame_.width, frame_.height);
-  for (std::size_t i = 0; i < residual.size(); ++i)
-    if (used_.data()[i]) residual.data()[i] = image_.data()[i] - s.simulated.data()[i];
-  return discrepancy_->ratios(*factor_, residual, seed);
-}
-
 SemTerm::Near SemTerm::near(const State& s, const std::vector<double>& mixture) const {
   constexpr double k = 2 * std::numbers::pi / 12;
   const Grid<double> none(frame_.width, frame_.height);

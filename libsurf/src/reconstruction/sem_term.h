@@ -70,8 +70,6 @@ class SemTerm {
                                           const std::vector<double>& mixture) const;
   /// A draw of `precision`: normal, with that covariance.
   Grid<double> draw_precision(const State& state, std::uint64_t seed) const;
-  /// See Discrepancy::ratios.
-  std::vector<double> discrepancy_ratios(const State& state, std::uint64_t seed) const;
 
   std::size_t channels() const { return channels_; }
   const Grid<double>& image() const { return image_; }  ///< on the surface's samples
