@@ -85,6 +85,18 @@ TEST(AfmPreparation, TipsAreRoundUnlessASizeIsSaid) {
   EXPECT_EQ(prepare_afm(seen, free).tip.z_nm.width(), 9);
 }
 
+TEST(AfmPreparation, TakesAScanWithoutNoiseWhereItsNoiseIsGiven) {
+  HeightField clean{{pitch, pitch}, Grid<double>(60, 60)};
+  for (int y = 20; y < 45; ++y)
+    for (int x = 15; x < 40; ++x) clean.z_nm(x, y) = 40;
+  EXPECT_THROW(prepare_afm(clean), InvalidInput);
+  AfmPreparationOptions o;
+  o.noise = AfmNoise{0.5, 0.09};
+  const PreparedAfm p = prepare_afm(clean, o);
+  EXPECT_EQ(p.noise.alpha, 0.5);
+  EXPECT_FALSE(p.rough_ground);
+}
+
 TEST(AfmPreparation, AScanThatTellsNothingOfItsTipIsTheSurface) {
   const PreparedAfm p = prepare_afm(scan(5));  // corners square to the pixel bound no tip
   EXPECT_EQ(p.tip.z_nm.width(), 1);

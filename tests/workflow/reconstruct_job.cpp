@@ -121,6 +121,7 @@ TEST_F(ReconstructJobTest, FindsTheSurfaceAndSaysHow) {
   truth.origin_x_nm = -shift.x0, truth.origin_y_nm = -shift.y0;  // in the SEM's frame
   job_.truth = truth;
   job_.truth_file = path("scan.txt");
+  job_.model_error = 0.03;
   const ReconstructSummary s = run(job_);
   ASSERT_TRUE(s.truth.has_value());
   EXPECT_LT(s.truth->rms_nm, s.truth->start_rms_nm);
@@ -132,6 +133,7 @@ TEST_F(ReconstructJobTest, FindsTheSurfaceAndSaysHow) {
   const auto json = report("result");
   EXPECT_EQ(json["sem"]["noise"]["intercept"], 4);
   EXPECT_THAT(json["repeat"].get<std::string>(), HasSubstr("--transform 1,0,60,0,1,45"));
+  EXPECT_THAT(json["repeat"].get<std::string>(), HasSubstr("--model-error 3%"));
   EXPECT_EQ(json["scales"].size(), 2u);
 }
 

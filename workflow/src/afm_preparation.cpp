@@ -55,18 +55,31 @@ Mask level_scan(PreparedAfm& prepared, const HeightField& scan, const AfmPrepara
   return levelled.substrate;
 }
 
-void find_noise(PreparedAfm& prepared, const AfmPreparationOptions& o) {
+/// The substrate, which also says whether there are plateaus. A scan whose noise is given need have
+/// none.
+std::optional<SubstrateNoise> find_substrate(PreparedAfm& prepared,
+                                             const AfmPreparationOptions& o) {
   FlatNoiseOptions flat;
   flat.watch = o.watch.part(0.1, 0.15);
-  const SubstrateNoise substrate = estimate_substrate_noise(prepared.image, flat);
-  const bool ground = is_rough_ground(substrate),
-             clear = substrate.plane.verdict == HoughVerdict::clear && !ground;
-  prepared.rough_ground = ground || substrate.plane.verdict == HoughVerdict::weak;
+  try {
+    SubstrateNoise found = estimate_substrate_noise(prepared.image, flat);
+    prepared.rough_ground = found.plane.verdict == HoughVerdict::weak || is_rough_ground(found);
+    return found;
+  } catch (const InvalidInput&) {
+    if (!o.noise) throw;
+    return {};
+  }
+}
+
+void find_noise(PreparedAfm& prepared, const AfmPreparationOptions& o) {
+  const std::optional<SubstrateNoise> found = find_substrate(prepared, o);
   if (o.noise) {
     validate(*o.noise, "`scan.height_noise`");
     prepared.noise = *o.noise;
     return;
   }
+  const SubstrateNoise& substrate = *found;
+  const bool clear = substrate.plane.verdict == HoughVerdict::clear && !is_rough_ground(substrate);
   const NoiseEstimate estimate = clear ? substrate.estimate : estimate_noise(prepared.image);
   prepared.noise = estimate.noise;
   prepared.noise_estimate = estimate;

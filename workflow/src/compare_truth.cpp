@@ -91,17 +91,19 @@ Grid<double> slopes_of(const HeightField& f) {
   return slope;
 }
 
+/// First that of all pixels.
 std::vector<RegionReport> regions_of(const Reconstruction& result, const HeightField& truth,
                                      const Differences& d) {
   const Grid<double> slope = slopes_of(truth), around = largest_around(slope, around_px);
-  std::vector<RegionReport> regions(4);
-  const char* const names[] = {"flat", "wall", "foot", "untouched"};
+  std::vector<RegionReport> regions(5);
+  const char* const names[] = {"all", "flat", "wall", "foot", "untouched"};
   for (std::size_t i = 0; i < d.less.z_nm.size(); ++i) {
     if (!d.less.valid.data()[i]) continue;
     const double off = std::abs(d.less.z_nm.data()[i] - d.middle),
                  deviation = result.deviation_nm.data()[i];
     const bool wall = slope.data()[i] > wall_above;
-    const bool in[] = {around.data()[i] < flat_below, wall, !wall && around.data()[i] > wall_above,
+    const bool in[] = {true, around.data()[i] < flat_below, wall,
+                       !wall && around.data()[i] > wall_above,
                        !result.data_support.empty() && (result.data_support.data()[i] & 1) == 0};
     for (std::size_t r = 0; r < regions.size(); ++r) {
       if (!in[r]) continue;
@@ -151,17 +153,10 @@ TruthReport compare_with_truth(const Reconstruction& result, const HeightField& 
       result.start.z_nm.height() == there.z_nm.height())
     report.start_rms_nm = differences(result.start, there).rms;
   if (!result.deviation_nm.empty()) {
-    std::int64_t within_1 = 0, within_2 = 0;
-    for (std::size_t i = 0; i < d.less.z_nm.size(); ++i) {
-      if (!d.less.valid.data()[i]) continue;
-      const double off = std::abs(d.less.z_nm.data()[i] - d.middle),
-                   deviation = result.deviation_nm.data()[i];
-      within_1 += off <= deviation;
-      within_2 += off <= 2 * deviation;
-    }
-    report.coverage_1 = static_cast<double>(within_1) / static_cast<double>(d.count);
-    report.coverage_2 = static_cast<double>(within_2) / static_cast<double>(d.count);
     report.regions = regions_of(result, there, d);
+    report.coverage_1 = report.regions.front().coverage_1;
+    report.coverage_2 = report.regions.front().coverage_2;
+    report.regions.erase(report.regions.begin());
   }
   subtract(d.less, fit_plane(d.less));
   report.plane_rms_nm = rms_of(d.less);

@@ -222,6 +222,7 @@ ReconstructJob parameters_of(const ReconstructJob& job) {
   out.pose = job.pose;
   out.calibration = job.calibration;
   out.sem_noise = job.sem_noise;
+  out.model_error = job.model_error;
   out.upsample = job.upsample;
   out.refine_tip = job.refine_tip;
   out.options = job.options;

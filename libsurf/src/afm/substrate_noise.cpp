@@ -59,6 +59,7 @@ SubstrateNoise estimate_substrate_noise(const HeightField& field, const FlatNois
 }
 
 bool is_rough_ground(const SubstrateNoise& found) {
+  if (!(found.estimate.noise.innovation_nm2 > 0)) return false;
   const Grid<double> white = whiten(found.residual_nm, found.estimate.noise, found.substrate);
   NoiseCheckOptions options;
   options.lags = 1;

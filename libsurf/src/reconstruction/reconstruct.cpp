@@ -30,6 +30,25 @@ constexpr double worth_loosening = 1.3;
 constexpr double edge_doubt_px = 0.15;
 constexpr double soft_px = 1;
 
+void check_discrepancy(const SemData& sem) {
+  double before_px = 1;
+  for (const SemDiscrepancy& part : sem.discrepancy) {
+    if (part.deviation.width() != sem.image.values.width() ||
+        part.deviation.height() != sem.image.values.height())
+      throw InvalidInput("SEM discrepancy", "it has another size than the SEM image",
+                         "Give a deviation for each pixel");
+    if (!std::ranges::all_of(part.deviation.data(),
+                             [](double d) { return d >= 0 && std::isfinite(d); }))
+      throw InvalidInput("SEM discrepancy", "a deviation is negative or not finite",
+                         "Give 0 where the model is right");
+    if (!(part.correlation_px >= before_px && part.correlation_px <= 1000))
+      throw InvalidInput("SEM discrepancy",
+                         fmt::format("a correlation length is {} pixels", part.correlation_px),
+                         "Give lengths from 1 to 1000 that do not fall");
+    before_px = part.correlation_px;
+  }
+}
+
 void check(const AfmData* afm, const SemData* sem, const ReconstructionOptions& o) {
   if (!afm && !sem)
     throw InvalidInput("reconstruct", "neither an AFM nor an SEM image is given",
@@ -58,6 +77,7 @@ void check(const AfmData* afm, const SemData* sem, const ReconstructionOptions& 
           fmt::format("its pixels are {} nm wide, the model's {} nm", sem->image.pitch_x_nm, scene),
           "Train a model for this pixel size");
     inverse(sem->sem_to_afm);
+    check_discrepancy(*sem);
   }
   for (std::size_t i = 0; i < o.scales_px.size(); ++i)
     if (!(o.scales_px[i] > 0.2 && o.scales_px[i] <= 1000) ||

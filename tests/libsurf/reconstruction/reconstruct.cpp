@@ -61,6 +61,21 @@ TEST(Reconstruct, DeviationsHoldWhereTheModelIsWrong) {
   EXPECT_GT(two_on_walls / walls, 0.85);
 }
 
+TEST(Reconstruct, RefusesADiscrepancyThatIsNone) {
+  const test::SmallScene scene;
+  const int w = scene.sem.image.values.width(), h = scene.sem.image.values.height();
+  const auto refused = [&](std::vector<SemDiscrepancy> parts) {
+    SemData sem = scene.sem;
+    sem.discrepancy = std::move(parts);
+    EXPECT_THROW(reconstruct(&scene.afm, &sem, quick()), InvalidInput);
+  };
+  refused({{Grid<double>(w + 1, h, 1.0), 4}});
+  refused({{Grid<double>(w, h, -1.0), 4}});
+  refused({{Grid<double>(w, h, NAN), 4}});
+  refused({{Grid<double>(w, h, 1.0), 0.5}});
+  refused({{Grid<double>(w, h, 1.0), 40}, {Grid<double>(w, h, 1.0), 4}});
+}
+
 TEST(Reconstruct, DeviationsKnowThatTheScanMayBeTilted) {
   test::SmallScene scene;
   const Reconstruction level = reconstruct(&scene.afm, &scene.sem);

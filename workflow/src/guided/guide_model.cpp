@@ -102,15 +102,18 @@ double interpolated(const Grid<double>& image, double x, double y) {
   return sum;
 }
 
+bool training_pays(const mc::Scene& scene, double primaries) {
+  const ModelRequest request = request_for(scene);
+  return request.pixel_nm >= finest_trained && request.pixel_nm <= coarsest_trained &&
+         primaries * (1 - 1 / usual_worth) > training_primaries(request);
+}
+
 }  // namespace
 
 bool trains_guide_model(const EstimateOptions& options, const mc::Scene& scene,
                         const fs::path& cache, double primaries) {
-  const double pixel_nm = std::sqrt(scene.scan().pixel_x_nm * scene.scan().pixel_y_nm);
   return options.model == "auto" && has_fast_models(scene) && !cache.empty() &&
-         pixel_nm >= finest_trained && pixel_nm <= coarsest_trained &&
-         primaries * (1 - 1 / usual_worth) > training_primaries(ModelRequest()) &&
-         !find_stored(scene, cache / "models");
+         training_pays(scene, primaries) && !find_stored(scene, cache / "models");
 }
 
 GuideModel find_guide_model(const EstimateOptions& options, const mc::Scene& scene,
@@ -127,7 +130,7 @@ GuideModel find_guide_model(const EstimateOptions& options, const mc::Scene& sce
     return none("by shape alone: fast models are of beams straight from above");
   if (cache.empty()) return none("by shape alone: there is no cache with fast models");
   if (auto stored = find_stored(scene, cache / "models")) return *std::move(stored);
-  if (trains_guide_model(options, scene, cache, primaries)) {
+  if (training_pays(scene, primaries)) {
     ModelRequest request = request_for(scene);
     request.folder = cache / "models";
     request.threads = threads;
