@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guided images against plain ones, and the errors that they state against those that they have.
-//   bench_guided FOLDER SCENES [ELECTRONS] [SEEDS] [NAME ...]   ("bunny" with SEMSURF_TEST_DATA
-//   alone)
+//   bench_guided FOLDER SCENES [ELECTRONS] [SEEDS] [NAME ...]
+// The scene "bunny" is there where SEMSURF_TEST_DATA has its mesh.
 // SCENES is bench/guided. Scenes called rough, mesa, trench and sphere chose the method; the others
 // judge it. Each is guided by shape, silicon also by samples/si-1keV-3nm.json beside SCENES; the
 // scene "gold" is guided by that model, too, which is wrong there. References of 1500 electrons per

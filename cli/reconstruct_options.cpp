@@ -17,7 +17,7 @@ or takes one that was kept, registers, calibrates, and finds the surface that ma
 its uncertainty. Each step can be overridden; FOLDER/report.json says what was used and how to repeat it, and
 FOLDER/panel.png shows everything: begin there. docs/reconstruction.md explains it.
 Ctrl-C or a crash loses one scale at most: the same command goes on.
-Exit code 4: there is a result but not to be trusted (the report's "reasons"), or the registration is not verified.
+Exit code 4: there is a result but not to be trusted (the report's "reasons"), or the images seem to show different places.
 
 Examples:
   semsurf reconstruct --afm scan.gwy --sem image.tif --material Si --energy 1keV -o result

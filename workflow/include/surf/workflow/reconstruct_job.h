@@ -76,7 +76,7 @@ struct TruthReport {
 enum class ReconstructionVerdict {
   sound,           ///< converged, and the residuals look like noise
   flagged,         ///< there is a result, but check `reasons` first
-  not_registered,  ///< the registration is not verified, so nothing was reconstructed
+  not_registered,  ///< the images seem unrelated, so nothing was reconstructed
 };
 
 struct ReconstructSummary {
@@ -102,7 +102,7 @@ struct ReconstructSummary {
 /// fitted), model.json, report.json, panel.png. While it runs, a file `checkpoint` there holds the
 /// state after each scale: the same job, started again after cancellation (Interrupted is thrown)
 /// or a crash, continues from it to the same bytes. A checkpoint of another job is discarded. If
-/// the registration is not verified, only transform.json and registration.png are written. Throws
+/// the images seem unrelated, only transform.json and registration.png are written. Throws
 /// UsageError, InvalidInput, FileError, Unsupported, Interrupted.
 ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter = {});
 
