@@ -53,7 +53,17 @@ class StratifiedPermutation {
     return static_cast<std::size_t>(b * block + (place << shift_) +
                                     (i & ((std::uint64_t{1} << shift_) - 1)));
   }
-  std::uint64_t offset(std::uint64_t b) const { return ((key_ + b) * 0x9e3779b97f4a7c15u) >> 40; }
+  /// Of single cascades mixed well (the finalizer of splitmix64, Steele et al. 2014,
+  /// doi:10.1145/2660193.2660195): pixels that take the same cascade of one block must not take the
+  /// same of all others, as those of long runs do.
+  std::uint64_t offset(std::uint64_t b) const {
+    constexpr std::uint64_t odd = 0x9e3779b97f4a7c15u;
+    if (shift_ > 0) return (key_ + b) * odd >> 40;
+    std::uint64_t x = (key_ << 32 | b) * odd;
+    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ x >> 27) * 0x94d049bb133111ebu;
+    return x >> 32;
+  }
 
   std::uint64_t blocks_, first_, key_;
   int shift_;

@@ -6,6 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
+#include "surf/core/random.h"
+
 namespace surf::mc {
 namespace {
 
@@ -60,6 +64,29 @@ TEST(StratifiedPermutation, IsEachPixelsOwn) {
   for (std::uint64_t i = 0; i < 6400; i += StratifiedPermutation::long_run)
     different += one[i] != third[i];
   EXPECT_GT(different, 50);
+}
+
+// Pixels that share one cascade must not share others for that reason, or their noise goes
+// together.
+TEST(StratifiedPermutation, PixelsShareCascadesByChanceOnly) {
+  constexpr std::uint64_t cascades = 16384, primaries = 32, pixels = 400;
+  RandomStream random(5, 1, 0);
+  std::vector<std::set<std::size_t>> taken(pixels);
+  for (auto& own : taken) {
+    const std::uint32_t a = random.bits(), b = random.bits();
+    const StratifiedPermutation subset(cascades, a, b, StratifiedPermutation::short_run);
+    for (std::uint64_t i = 0; i < primaries; ++i) own.insert(subset[i]);
+  }
+  double pairs = 0, shared = 0, twice = 0;
+  for (std::size_t i = 0; i < pixels; ++i)
+    for (std::size_t k = 0; k < i; ++k) {
+      double both = 0;
+      for (const std::size_t cascade : taken[i]) both += double(taken[k].count(cascade));
+      pairs += 1, shared += both, twice += both * (both - 1);
+    }
+  EXPECT_NEAR(shared / pairs, double(primaries * primaries) / cascades, 0.006);
+  // A quarter of the pairs have blocks in common, of which each is shared by 1 in 64.
+  EXPECT_LT(twice / pairs, 0.05);
 }
 
 }  // namespace
