@@ -37,7 +37,7 @@ SimulateJob guided_job() {
 
 SimulateJob job_in_rounds() {
   SimulateJob job = guided_job();
-  job.scene.budget = mc::Accuracy{0.06, 0.01};
+  job.scene.budget = mc::Accuracy{0.05, 0.01};
   return job;
 }
 

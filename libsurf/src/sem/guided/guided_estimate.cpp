@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include "count_variance.h"
 #include "gaussian_window.h"
@@ -24,13 +25,12 @@ constexpr double yield_sigma_px = 3;       // of the yields that errors are rela
 constexpr double least_yield_share = 0.1;  // of the mean: darker pixels do not count for more
 // Squared bias over spread, for each class of detail, where nothing more is known: as rough ground,
 // a mesa, a trench and a sphere have it (docs/development/guided_images.md).
-constexpr double usual_bias[detail_classes] = {0.25, 0.5, 0.8};
+constexpr double usual_bias[detail_classes] = {0.33, 0.75, 1.4};
 constexpr double unguided_bias = 0.5;  // where windows are all there is
 constexpr double most_variance_scale = 4;
 constexpr double detail_sigma_px = 1.5;
 constexpr double detail_ranks[detail_classes] = {0.5, 0.85, 0.97};  // of the middle of each class
 constexpr double risk_sigma_px = 5;  // of the pixels whose risk is averaged
-constexpr int block_px = 16;         // squares that Stein's risk is compared in
 // A pixel that differs from its estimate by more than this many standard deviations of its counts
 // keeps what is beyond (Efron and Morris 1972, doi:10.1080/01621459.1972.10481215).
 constexpr double most_deviations = 4;
@@ -199,49 +199,43 @@ struct ErrorModel {
   }
 };
 
-/// Squared bias over spread, of a class: the least squares fit over squares of pixels. What is
-/// expected beforehand, known to within itself, counts as one more measurement.
-double fit_bias(const GuidedRegion& r, const GuidedPlanes& planes, const ErrorModel& model,
-                int detail_class) {
-  const int width = r.counts.width, height = r.counts.height;
-  double product = 0, square = 0;
-  for (int y0 = 0; y0 < height; y0 += block_px)
-    for (int x0 = 0; x0 < width; x0 += block_px) {
-      double risk = 0, spread = 0, noise = 0, doubt = 0;
-      for (int y = y0; y < std::min(y0 + block_px, height); ++y)
-        for (int x = x0; x < std::min(x0 + block_px, width); ++x) {
-          const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                static_cast<std::size_t>(x);
-          if (!r.counts.counts(i)) continue;
-          const double w = share_of_class(detail_class, r.detail[i]) * r.weight[i];
-          if (w == 0) continue;
-          const PixelErrors e = errors_of(r, planes, i);
-          const double variance = model.variance_scale(r.detail[i]) * e.variance;
-          // A half's variance is twice that of the mean of both.
-          risk += w * (e.risk - 2 * variance);
-          spread += w * planes.spread[i];
-          noise += w * e.half_noise;
-          doubt += std::pow(w * e.half_noise, 2);  // two halves, each with twice this
-        }
-      if (!(noise > 0)) continue;
-      product += risk * spread / doubt;
-      square += spread * spread / doubt;
+/// What squared errors are in truth over what is expected of them, before anything is seen: most
+/// are right within a factor, and some are off by far. The mean is 1.
+struct RatioPrior {
+  static constexpr std::size_t steps = 48;
+  std::array<double, steps> value, weight;
+
+  RatioPrior() {
+    constexpr double lowest = -2.4, step = 0.2;                           // of logarithms
+    constexpr double usual = 0.5, unusual = 1.5, share_of_unusual = 0.1;  // their deviations
+    double sum = 0, mean = 0;
+    for (std::size_t k = 0; k < steps; ++k) {
+      const double x = lowest + static_cast<double>(k) * step;
+      value[k] = std::exp(x);
+      weight[k] = (1 - share_of_unusual) / usual * std::exp(-0.5 * x * x / (usual * usual)) +
+                  share_of_unusual / unusual * std::exp(-0.5 * x * x / (unusual * unusual));
+      sum += weight[k], mean += weight[k] * value[k];
     }
-  const double expected = r.guides[0].empty() ? unguided_bias : usual_bias[detail_class],
-               before = 1 / (expected * expected);
-  return std::max(0.0, (product + before * expected) / (square + before));
+    for (double& v : value) v *= sum / mean;
+  }
+};
+
+/// The mean a posteriori of such a ratio that is seen as `ratio` with a variance of `doubt`: what
+/// chance alone may show hardly counts, and what it cannot show counts in full.
+double likely_ratio(double ratio, double doubt) {
+  static const RatioPrior prior;
+  if (!(doubt > 0)) return std::max(ratio, prior.value.front());
+  double nearest = std::numeric_limits<double>::max(), sum = 0, mean = 0;
+  for (const double v : prior.value) nearest = std::min(nearest, (v - ratio) * (v - ratio));
+  for (std::size_t k = 0; k < RatioPrior::steps; ++k) {
+    const double away = prior.value[k] - ratio,
+                 w = prior.weight[k] * std::exp(-0.5 * (away * away - nearest) / doubt);
+    sum += w, mean += w * prior.value[k];
+  }
+  return mean / sum;
 }
 
-/// What is expected of a squared error, and what is seen around the pixel, weighed by how well each
-/// is known: the first within about itself, the second with a variance of `doubt`.
-double combine(double expected, double seen, double doubt) {
-  const double prior = expected * expected;
-  if (!(prior > 0)) return expected;
-  return std::max(expected + prior / (prior + doubt) * (seen - expected), 0.5 * expected);
-}
-
-/// What Stein's risk says of a class as a whole, over what is expected of it: as in `combine`.
-/// Where counts tell it well it may be much less.
+/// What Stein's risk says of a class as a whole, over what is expected of it.
 double level_of(const GuidedRegion& r, const GuidedPlanes& planes, const ErrorModel& model,
                 int detail_class) {
   double seen = 0, expected = 0, doubt = 0, noise = 0;
@@ -257,9 +251,7 @@ double level_of(const GuidedRegion& r, const GuidedPlanes& planes, const ErrorMo
   }
   doubt += r.variance.noise_scale_doubt * noise * noise;
   if (!(expected > 0)) return 1;
-  doubt /= expected * expected;
-  const double left = std::sqrt(doubt / (1 + doubt));  // standard deviation of what is combined
-  return std::max(1 + (seen / expected - 1) / (1 + doubt), 0.5 * left);
+  return likely_ratio(seen / expected, doubt / (expected * expected));
 }
 
 ErrorModel fit_errors(const GuidedRegion& r, const GuidedPlanes& planes) {
@@ -279,7 +271,8 @@ ErrorModel fit_errors(const GuidedRegion& r, const GuidedPlanes& planes) {
     model.variance[c] = by_weights[c] > 0 ? std::clamp(by_difference[c] / by_weights[c],
                                                        1 / most_variance_scale, most_variance_scale)
                                           : 1;
-  for (int c = 0; c < detail_classes; ++c) model.bias[c] = fit_bias(r, planes, model, c);
+  for (int c = 0; c < detail_classes; ++c)
+    model.bias[c] = r.guides[0].empty() ? unguided_bias : usual_bias[c];
   std::array<double, detail_classes> level;
   for (int c = 0; c < detail_classes; ++c) level[c] = level_of(r, planes, model, c);
   model.level = level;
@@ -334,7 +327,7 @@ void put(const GuidedRegion& r, const GuidedPlanes& planes, double library_casca
     const double noise = r.variance.of_mean(value, r.counts.primaries(i)),
                  variance = model.variance_scale(r.detail[i]) * e.variance;
     double square = model.expected(e.variance, planes.spread[i], r.detail[i]) *
-                    combine(1, around.ratio[i], around.doubt[i]);
+                    likely_ratio(around.ratio[i], around.doubt[i]);
     const double away = r.counts.mean(i) - value,
                  beyond = std::abs(away) - most_deviations * std::sqrt(noise);
     if (beyond > 0) {
