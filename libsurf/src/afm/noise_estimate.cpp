@@ -193,6 +193,54 @@ AfmNoise fit_model(const Differences& variance, std::size_t distances) {
   return {best, std::exp(log_s2) * (1 - best * best)};
 }
 
+/// An upper bound of the noise by sixth differences across rows, whose noise is independent: what
+/// is smooth over seven rows, as what a tip draws, does not count. By their median, so that neither
+/// do edges. 0: there are too few.
+struct RowBound {
+  double sigma_nm = 0;
+  std::size_t places = 0;
+};
+
+RowBound bound_across_rows(const HeightField& field) {
+  constexpr std::array<double, 7> binomial{1, -6, 15, -20, 15, -6, 1};
+  constexpr double norm = 924;  // the sum of their squares
+  constexpr std::size_t least_places = 400;
+  const int width = field.z_nm.width(), height = field.z_nm.height();
+  const int every = 1 + static_cast<int>(field.z_nm.size() / enough_centres);
+  std::vector<double> sizes;
+  for (int y = 0; y + 6 < height; y += every)
+    for (int x = 0; x < width; ++x) {
+      double difference = 0;
+      bool whole = true;
+      for (int k = 0; k < 7; ++k) {
+        whole = whole && field.is_valid(x, y + k);
+        if (whole) difference += binomial[static_cast<std::size_t>(k)] * field.z_nm(x, y + k);
+      }
+      if (whole) sizes.push_back(std::fabs(difference));
+    }
+  if (sizes.size() < least_places) return {};
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return {*middle / median_of_normal / std::sqrt(norm), sizes.size()};
+}
+
+/// Rough ground looks like noise that is strongly correlated along rows. Where the bound says for
+/// certain that there is less, alpha is what the differences of neighbours then leave.
+void apply(const RowBound& bound, double neighbours_variance, NoiseEstimate& estimate) {
+  constexpr double clearly = 0.8, deviations = 4;
+  if (!(bound.sigma_nm > 0)) return;
+  const double s2 = bound.sigma_nm * bound.sigma_nm, q = neighbours_variance / (12 * s2),
+               alpha = std::clamp(2 - std::sqrt(1 + q), -alpha_limit, alpha_limit),
+               // Places overlap, and neighbours along rows tell less.
+      independent =
+          static_cast<double>(bound.places) / 7 * (1 - std::fabs(alpha)) / (1 + std::fabs(alpha)),
+               share = 1.17 / std::sqrt(independent);  // of a median
+  if (!(bound.sigma_nm * (1 + deviations * share) < clearly * estimate.sigma_nm())) return;
+  estimate.noise = {alpha, s2 * (1 - alpha * alpha)};
+  estimate.alpha_at_limit = false;
+  estimate.sigma_stderr_nm = share * bound.sigma_nm;
+}
+
 }  // namespace
 
 double NoiseEstimate::sigma_nm() const { return std::sqrt(noise.variance_nm2()); }
@@ -245,6 +293,7 @@ NoiseEstimate estimate_noise(const HeightField& field) {
   out.alpha_stderr = std::sqrt(share * alpha);
   out.innovation_stderr_nm2 = std::sqrt(share * innovation);
   out.sigma_stderr_nm = std::sqrt(share * sigma);
+  apply(bound_across_rows(field), v[0], out);
   return out;
 }
 

@@ -145,5 +145,21 @@ TEST(EstimateNoise, WorksFromFiveByThreeOnAndRefusesLess) {
   EXPECT_THROW(estimate_noise(noisy({0, 1}, 50, 2, 1)), InvalidInput);
 }
 
+/// Ground that bends everywhere, as a dull tip draws it, is no noise.
+TEST(EstimateNoise, IsRightOnRoughGround) {
+  const AfmNoise noise{0.8, 0.2};
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    HeightField f = noisy(noise, 160, 120, seed);
+    for (int y = 0; y < 120; ++y)
+      for (int x = 0; x < 160; ++x)
+        f.z_nm(x, y) += 30 * std::sin(0.45 * x + 0.2 * y) * std::cos(0.37 * y - 0.1 * x) +
+                        12 * std::sin(0.31 * x * std::cos(0.02 * y));
+    const NoiseEstimate e = estimate_noise(f);
+    EXPECT_NEAR(e.sigma_nm(), std::sqrt(noise.variance_nm2()), 0.15) << seed;
+    EXPECT_FALSE(e.alpha_at_limit);
+    EXPECT_LT(e.sigma_stderr_nm, 0.1);
+  }
+}
+
 }  // namespace
 }  // namespace surf
