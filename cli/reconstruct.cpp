@@ -84,6 +84,7 @@ void print_summary(const workflow::ReconstructSummary& s, const workflow::Recons
                      "to be",
                      100 * s.result.sem_discrepancy_share));
   print_surface(s.result);
+  for (const std::string& part : s.held) line("", part);
   if (s.truth) {
     line("truth",
          fmt::format("{:.3g} nm rms off, {:.3g} nm before ({:.3f} of the squared error); median "

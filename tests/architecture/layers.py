@@ -64,7 +64,7 @@ THIRD_PARTY = [
     ("CGAL/*", ["libsurf/src/mesh/cgal_*.cpp"]),
     ("OpenMesh/*", ["libsurf/src/mesh/openmesh_*.cpp"]),
     ("Eigen/*", ["libsurf/src/afm/cholesky.cpp", "libsurf/src/reconstruction/descent.cpp", "libsurf/src/reconstruction/discrepancy.cpp", "libsurf/src/reconstruction/preconditioner.cpp",
-                 "libsurf/src/registration/correlation.cpp", "libsurf/src/registration/landmarks.cpp",
+                 "libsurf/src/reconstruction/tilt_by_sem.cpp", "libsurf/src/registration/correlation.cpp", "libsurf/src/registration/landmarks.cpp",
                  "libsurf/src/registration/uncertainty.cpp", "libsurf/src/sem/calibration/calibration.cpp",
                  "libsurf/src/sem/facet/fit_filter_bank.cpp", "libsurf/src/sem/noise/flat_samples.cpp",
                  "libsurf/src/sem/network/network_trainer.cpp"]),

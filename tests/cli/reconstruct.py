@@ -21,7 +21,7 @@ os.environ["SEMSURF_CACHE"] = "off"
 COMMAND = [PROGRAM, "reconstruct", "--afm", "scan.txt", "--sem", "sem.exr", "--model", str(DATA / "secant.json"), "--transform",
            "1,0,0,0,1,0", "--tip", "cone:8nm,20deg", "--tip-size", "9", "--level-method", "none", "--afm-noise", "0.5,0.01", "--gains", "1,0",
            "--sem-noise", "0,1e-4", "--scales", "6,5,4,3,2,1", "--optimiser", "conjugate-gradients", "--iterations", "12",
-           "--optimiser-tolerance", "1e-12", "--no-uncertainty", "--no-picture", "--threads", "1"]
+           "--optimiser-tolerance", "1e-12", "--no-uncertainty", "--corrections", "1", "--correction-electrons", "8", "--no-picture", "--threads", "1"]
 
 
 def expect(truth, *what):

@@ -41,6 +41,7 @@ CHAIN = {"LevelMethod": ("Plane", "level.method=plane"),
          "LevelTolerance": (1.5, "level.tolerance_nm=1.5", {"LevelMethod": "Hough"}), "Rows": ("Median", "level.rows=median"),
          "HeightNoise": ("0.25,0.5", "scan.height_noise_nm=0.25,0.5"), "TipSize": (7, "reconstruction.tip_size=7"),
          "Energy": (1000, "beam.energy_ev=1000"), "Spot": (0, "beam.spot_nm=0"),
+         "Physics": ("barrier=classical", "simulation.physics=inelastic=monsel,elastic=mott,atoms=free,loss=joy-luo,secondaries=on,barrier=classical"),
          "Objective": ("Mutual information", "registration.objective=mutual-information")}
 STEPS = {
     "LevelScan": LEVELLING,
@@ -67,7 +68,9 @@ STEPS = {
         "Prior": (0.25, "reconstruction.prior=0.25"), "FixedTransform": (1, "reconstruction.fixed_transform=on"),
         "FixedCalibration": (1, "reconstruction.fixed_calibration=on"), "RefineTip": (1, "reconstruction.refine_tip=on"),
         "KeepTip": (1, "reconstruction.keep_tip=on"), "NoUncertainty": (0, "reconstruction.no_uncertainty=off"),
-        "Probes": (3, "reconstruction.probes=3"), "ModelError": (0.02, "reconstruction.model_error=0.02"), "Upsample": (2, "reconstruction.upsample=2")},
+        "Probes": (3, "reconstruction.probes=3"), "ModelError": (0.02, "reconstruction.model_error=0.02"),
+        "Corrections": (0, "reconstruction.corrections=0"), "CorrectionElectrons": (8, "reconstruction.correction_electrons=8"),
+        "ScanTilt": ("0,0", "reconstruction.scan_tilt=0,0,0,0"), "Upsample": (2, "reconstruction.upsample=2")},
     "AFMTip": {"Shape": ("Ball", "tip.shape=ball:5nm"), "Radius": (7, "tip.shape=cone:7nm,15deg"),
                "HalfAngle": (20, "tip.shape=cone:5nm,20deg"), "Faces": (3, "tip.shape=pyramid:5nm,15deg,3", {"Shape": "Pyramid"}),
                "Rotation": (9, "tip.shape=pyramid:5nm,15deg,4,9deg", {"Shape": "Pyramid"}),

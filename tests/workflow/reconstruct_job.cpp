@@ -23,9 +23,11 @@
 #include "surf/io/files.h"
 #include "surf/io/height_field_file.h"
 #include "surf/io/model/model_file.h"
+#include "surf/io/sim/materials.h"
 #include "surf/io/tip_file.h"
 #include "surf/mesh/shapes.h"
 #include "surf/sem/slope_model.h"
+#include "surf/workflow/simulate_job.h"
 #include "temporary_folder.h"
 
 namespace surf::workflow {
@@ -71,6 +73,8 @@ class ReconstructJobTest : public testing::Test {
     job_.sem_noise = SemNoise{0, 4, 1e-3};
     job_.folder = path("result");
     job_.picture = false;
+    job_.corrections = 0;
+    job_.tilt = SemTilt{};
     job_.upsample = 1;
     job_.options.scales_px = {4, 1};
     job_.options.iterations = 8;
@@ -149,6 +153,89 @@ TEST_F(ReconstructJobTest, GoesOnToTheSameBytes) {
   EXPECT_EQ(io::read_file(job_.folder / "surface.vti"), wanted);
   EXPECT_EQ(io::read_file(job_.folder / "history.csv"),
             io::read_file(path("result") / "history.csv"));
+}
+
+/// The SEM image is by Monte Carlo, which the model of 1 / cos knows badly.
+class CorrectedReconstruction : public ReconstructJobTest {
+ protected:
+  CorrectedReconstruction() {
+    SimulateJob simulation;
+    simulation.scene.specimen.materials = {io::find_material("Si", "test")};
+    simulation.scene.specimen.height_field = mc::HeightFieldBody{"truth", truth_, 0, Edge::mirror};
+    simulation.scene.beam.energy_ev = 1000;
+    simulation.scene.scan.width = 50, simulation.scene.scan.height = 40;
+    simulation.scene.scan.region =
+        mc::ScanRequest::Region{shift.x0 - 0.5 * pitch, shift.y0 - 0.5 * pitch,
+                                shift.x0 + 49.5 * pitch, shift.y0 + 39.5 * pitch};
+    simulation.scene.budget = mc::ElectronsPerPixel{200};
+    simulation.execution.threads = 1;
+    const SimulateSummary done = run(simulation);
+    for (int y = 0; y < 40; ++y)
+      for (int x = 0; x < 50; ++x)
+        job_.sem->image.values(x, y) =
+            100 * done.result.yield(0, x, y).mean + 100 * done.result.yield(1, x, y).mean + 20;
+    job_.calibration = {{100, 100}, 20};
+    job_.options.refine_calibration = false;
+    job_.sem_noise = SemNoise{0, 60, 1e-3};
+    job_.truth = truth_;
+    job_.truth->origin_x_nm = -shift.x0, job_.truth->origin_y_nm = -shift.y0;
+    job_.truth_file = path("scan.txt");
+    job_.correction_electrons = 16;
+    job_.options.scales_px = {1};
+    job_.options.uncertainty = false;
+  }
+};
+
+TEST_F(CorrectedReconstruction, MonteCarloPutsAWrongModelRight) {
+  const double wrong = run(job_).truth->rms_nm;
+  job_.corrections = 1;
+  const ReconstructSummary s = run(job_);
+  EXPECT_LT(s.truth->rms_nm, 0.9 * wrong);
+  ASSERT_FALSE(s.corrections.empty());
+  EXPECT_GT(s.corrections[0].off_share[0], 0.05);
+  EXPECT_LT(s.corrections[0].error_share[0], 0.7 * s.corrections[0].off_share[0]);
+  EXPECT_EQ(s.corrections[0].primaries, 16 * 50 * 40);
+  EXPECT_GT(s.corrections[0].moved_nm, 0.1);
+  const auto json = report("result");
+  EXPECT_EQ(json["corrections"].size(), s.corrections.size());
+  EXPECT_THAT(json["repeat"].get<std::string>(), HasSubstr("--corrections 1"));
+}
+
+TEST_F(CorrectedReconstruction, GoesOnInTheMiddleOfItsRounds) {
+  job_.corrections = 2;
+  run(job_);
+  const std::string wanted = io::read_file(job_.folder / "surface.vti");
+  job_.folder = path("stopped");
+  CancelToken token;
+  Reporter listener;
+  listener.cancel = &token;
+  listener.on_note = [&](const std::string& note) {
+    if (note.find("Monte Carlo corrects") != std::string::npos) token.cancel();
+  };
+  EXPECT_THROW(run(job_, listener), Interrupted);
+  const ReconstructSummary s = run(job_);
+  EXPECT_TRUE(s.resumed);
+  EXPECT_EQ(io::read_file(job_.folder / "surface.vti"), wanted);
+}
+
+TEST_F(ReconstructJobTest, ModelsOfOtherSignalsAreNotCorrected) {
+  TrainedModel model = io::read_model(path("si.json"));
+  model.scope.material = "somebody's own";
+  io::write_model(path("si.json"), model);
+  job_.corrections = 2;
+  EXPECT_THAT(run(job_).corrections, IsEmpty());
+}
+
+TEST_F(ReconstructJobTest, ATiltThatIsGivenIsAddedToTheScan) {
+  const ReconstructSummary level = run(job_);
+  job_.tilt = SemTilt{0.002, 0, {1e-4, 1e-4}};
+  const ReconstructSummary s = run(job_);
+  const Grid<double>&before = level.afm->image.z_nm, &after = s.afm->image.z_nm;
+  EXPECT_NEAR(after(60, 40) - before(60, 40) - (after(40, 40) - before(40, 40)), 0.002 * 20 * pitch,
+              1e-9);
+  EXPECT_EQ(s.afm->level_doubt.x, 1e-4);
+  EXPECT_THAT(report("result")["repeat"].get<std::string>(),
+              HasSubstr("--scan-tilt 0.002,0,1e-04,1e-04"));
 }
 
 TEST_F(ReconstructJobTest, TheTipIsFittedWhereItWasFoundBlindlyOrAsked) {
@@ -241,6 +328,8 @@ TEST_F(ReconstructJobTest, AnyOtherInputBeginsAnew) {
       [](ReconstructJob& j) { j.calibration->offset = 21; },
       [](ReconstructJob& j) { j.calibration->gains[1] = 90; },
       [](ReconstructJob& j) { j.pose.transform->x0 += 1; },
+      [](ReconstructJob& j) { j.tilt->x = 1e-4; },
+      [](ReconstructJob& j) { j.corrections = 1; },
       [](ReconstructJob& j) { j.options.curvature_prior_per_nm = 0.01; },
       [](ReconstructJob& j) { j.options.refine_transform = false; },
   };
@@ -359,6 +448,24 @@ TEST(ReconstructionCheckpoint, AStateComesBackToTheLastBit) {
   for (std::size_t size = 0; size < bytes.size(); ++size)
     EXPECT_FALSE(unpack(bytes.substr(0, size)).has_value()) << size;
   EXPECT_FALSE(unpack(bytes + "x").has_value());
+}
+
+TEST(ReconstructionCheckpoint, ACorrectionComesBackToTheLastBit) {
+  ModelCorrection correction;
+  for (ModelImages* images : {&correction.off, &correction.error}) {
+    images->emplace_back(3, 2);
+    images->back().data() = {1.0 / 3, -0.0, 5e-324, 1e60, 2, 3};
+  }
+  correction.mean = {0.7};
+  correction.primaries = 1234;
+  const std::string bytes = pack(correction);
+  const auto back = unpack_correction(bytes);
+  ASSERT_TRUE(back.has_value());
+  EXPECT_EQ(pack(*back), bytes);
+  EXPECT_EQ(back->off, correction.off);
+  EXPECT_FALSE(unpack(bytes).has_value());
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    EXPECT_FALSE(unpack_correction(bytes.substr(0, size)).has_value()) << size;
 }
 
 TEST(ReconstructionCheckpoint, GivesBackTheLastStateOfTheSameJob) {

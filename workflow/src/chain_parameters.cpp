@@ -63,6 +63,16 @@ SemNoise read_sem_noise(std::string_view text, const std::string& subject) {
   return noise;
 }
 
+SemTilt read_tilt(std::string_view text, const std::string& subject) {
+  std::vector<double> v = numbers_of(text, subject);
+  if (v.size() == 2) v.resize(4, 0.0);
+  if (v.size() != 4 || v[2] < 0 || v[3] < 0)
+    throw UsageError(subject, fmt::format("'{}' is not two slopes and their standard errors", text),
+                     "Give slopes along x and y, and their standard errors if you like, as "
+                     "0.001,-0.002,1e-4,1e-4");
+  return {v[0], v[1], {v[2], v[3]}};
+}
+
 std::vector<double> read_gains(std::string_view text, const std::string& subject) {
   std::vector<double> gains = numbers_of(text, subject);
   if (std::ranges::all_of(gains, [](double gain) { return gain == 0; }))
@@ -143,6 +153,10 @@ void describe(ParameterVisitor& visit, ModelRequest& request) {
   request.energy_ev = energy_ev.value_or(0);
   request.spot_given = spot_nm.has_value();
   request.spot_nm = spot_nm.value_or(request.spot_nm);
+  mc::SimulationRequest simulation;
+  simulation.physics = request.physics;
+  describe_some(visit, simulation, {{"simulation.physics"}});
+  request.physics = simulation.physics;
   describe_path(visit, request.file,
                 {.name = "reconstruction.model",
                  .help = "Fast model, as 'semsurf train' writes it",
@@ -237,8 +251,33 @@ void describe(ParameterVisitor& visit, ReconstructJob& job) {
                  "by other physics, another detector, contamination",
          .unit = Unit::share,
          .limits = within(0, 1)});
+    visit(job.corrections,
+          {.name = "reconstruction.corrections",
+           .help = "Most rounds in which Monte Carlo images of the surface correct the model of "
+                   "SEM images, until the surface moves no more",
+           .limits = within(0, 10)});
+    visit(job.correction_electrons, {.name = "reconstruction.correction_electrons",
+                                     .help = "Primaries per pixel of these images",
+                                     .limits = within(2, 1'000'000),
+                                     .level = Level::advanced});
   }
-  if (job.afm && job.sem) describe(visit, job.pose);
+  if (job.afm && job.sem) {
+    describe(visit, job.pose);
+    visit.form(
+        {.name = "reconstruction.scan_tilt",
+         .help = "Slopes to add to the levelled scan along its axes, nm per nm, and their "
+                 "standard errors",
+         .otherwise = "found with the SEM image",
+         .form = "X,Y[,DX,DY]",
+         .level = Level::advanced},
+        [&] {
+          const auto& t = job.tilt;
+          return t ? text_of({t->x, t->y, t->doubt.x, t->doubt.y}) : std::string();
+        },
+        [&](std::string_view text, const std::string& subject) {
+          job.tilt = read_tilt(text, subject);
+        });
+  }
   ReconstructionOptions options = job.options;
   options.refine_tip = job.refine_tip.value_or(false);
   describe(visit, options);

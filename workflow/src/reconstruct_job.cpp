@@ -9,6 +9,7 @@
 
 #include "chain_steps.h"
 #include "compare_truth.h"
+#include "correct_and_reconstruct.h"
 #include "first_calibration.h"
 #include "job_identity.h"
 #include "reconstruction_checkpoint.h"
@@ -20,10 +21,13 @@
 #include "surf/core/units.h"
 #include "surf/io/files.h"
 #include "surf/io/plot.h"
+#include "surf/io/sim/materials.h"
 #include "surf/io/transform_file.h"
+#include "surf/reconstruction/tilt_by_sem.h"
 #include "surf/workflow/step_record.h"
 #include "surf/workflow/version.h"
 #include "tip_with_sem.h"
+#include "what_held.h"
 
 namespace surf::workflow {
 namespace {
@@ -48,7 +52,7 @@ std::string map_text(const Affine& m) { return text_of({m.xx, m.xy, m.x0, m.yx, 
 
 /// Everything that the states of the reconstruction depend on.
 Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const SemData* sem,
-                     const StoredModel* model) {
+                     const StoredModel* model, const CorrectionRequest* corrections, int rounds) {
   Identity id{{"semsurf", version()},
               {"program", program_hash()},
               {"instruction set", std::string(instruction_set())}};
@@ -80,6 +84,10 @@ Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const S
       id["model error"] +=
           fmt::format("{} {:g} ", hash_of(part.deviation.data()), part.correlation_px);
   }
+  if (corrections)
+    id["corrections"] =
+        fmt::format("{} {} {} {} {}", rounds, corrections->electrons, corrections->material.name,
+                    mc::format_physics(corrections->physics), corrections->seed);
   return id;
 }
 
@@ -179,6 +187,39 @@ bool finds_tip(const ReconstructJob& job) {
          job.refine_tip.value_or(true);
 }
 
+/// The physics that are asked for, or the model's own.
+mc::Physics physics_of(const ReconstructJob& job, const StoredModel& model) {
+  mc::Physics physics = job.model.physics;
+  const auto own = model.trained.record.notes.find("physics");
+  const bool asked = mc::format_physics(physics) != mc::format_physics({});
+  if (asked || own == model.trained.record.notes.end()) return physics;
+  mc::parse_physics(own->second, physics);
+  return physics;
+}
+
+/// What Monte Carlo needs to correct the model; nothing without an SEM image, or for a model of
+/// what cannot be simulated.
+std::optional<CorrectionRequest> correction_request(const ReconstructJob& job,
+                                                    const ReconstructSummary& s) {
+  if (!job.sem || !s.model) return std::nullopt;
+  CorrectionRequest request;
+  request.material = job.model.material;
+  if (request.material.name.empty()) {
+    try {
+      request.material = io::find_material(s.model->trained.scope.material, "model");
+    } catch (const Error&) {  // a material of the user's own, whose file is not given
+      return std::nullopt;
+    }
+  }
+  if (!can_be_corrected(*s.model, request.material)) return std::nullopt;
+  request.physics = physics_of(job, *s.model);
+  request.electrons = job.correction_electrons;
+  request.seed = job.options.seed;
+  request.cache = job.model.folder.parent_path();
+  request.threads = job.options.threads;
+  return request;
+}
+
 /// Collects the warnings of the chain's steps for a job.
 class Warnings {
  public:
@@ -194,12 +235,36 @@ class Warnings {
   Reporter told_;
 };
 
+/// Tilts the scan about the middle of the SEM image.
+void tilt_scan(const SemTilt& by, const PlacedImage& sem, const Affine& map, PreparedAfm& prepared,
+               AfmData& afm) {
+  const Point2 middle =
+      map(sem.place_nm(0.5 * (sem.values.width() - 1), 0.5 * (sem.values.height() - 1)));
+  const Plane back{0, -by.x, -by.y, middle.x, middle.y};
+  subtract(prepared.image, back);
+  subtract(prepared.certainty.surface, back);
+  prepared.level_doubt = by.doubt;
+  afm.image = prepared.image;
+  afm.level_doubt = by.doubt;
+}
+
+/// Levels the scan by the SEM image, too: `found` is what it has been tilted by so far.
+void level_by_sem(const HeightField& surface, const SemData& sem, const Affine& map,
+                  const SlopeDoubt& doubt, int threads, PreparedAfm& prepared, AfmData& afm,
+                  SemTilt& found) {
+  const SemTilt more = tilt_by_sem(surface, sem, map, {-found.x, -found.y, doubt}, threads);
+  found = {found.x + more.x, found.y + more.y, more.doubt};
+  tilt_scan(more, sem.image, sem.sem_to_afm, prepared, afm);
+}
+
 /// Calibrates the SEM image and estimates its noise. With a scan both are found twice: the eroded
 /// scan is too broad where it matters, so a first, coarse reconstruction replaces it (at most
 /// `rounds` times).
 SemData sem_data(const ReconstructJob& job, ReconstructSummary& s, const PlacedImage& image,
-                 const AfmData* afm, const Reporter& told) {
+                 AfmData* afm, const Reporter& told) {
   begin(told, "calibration");
+  const SlopeDoubt level_doubt = afm ? afm->level_doubt : SlopeDoubt{};
+  const bool levels = afm && !job.tilt && level_doubt.x > 0 && level_doubt.y > 0;
   constexpr int rounds = 2;
   const HeightField* eroded = s.afm ? &s.afm->eroded() : nullptr;
   const Affine map = s.pose ? s.pose->sem_to_afm : Affine{};
@@ -215,7 +280,9 @@ SemData sem_data(const ReconstructJob& job, ReconstructSummary& s, const PlacedI
                    map,
                    usual_discrepancy(image, job.model_error)};
   };
-  for (int round = 0; afm && !(job.calibration && job.sem_noise) && round < rounds; ++round) {
+  const bool calibrates = !(job.calibration && job.sem_noise);
+  if (afm && job.tilt) s.tilt = *job.tilt, tilt_scan(s.tilt, image, map, *s.afm, *afm);
+  for (int round = 0; afm && (calibrates || levels) && round < rounds; ++round) {
     ReconstructionOptions coarse;
     coarse.scales_px = {
         default_scales_px(coarse.method, image.values.width(), image.values.height()).front()};
@@ -230,10 +297,15 @@ SemData sem_data(const ReconstructJob& job, ReconstructSummary& s, const PlacedI
     coarse.watch = told.watch().part(double(round) / rounds, double(round + 1) / rounds);
     const SemData sem = data();
     const Reconstruction r = reconstruct(afm, &sem, coarse);
+    if (levels)
+      level_by_sem(r.surface, sem, r.sem_to_afm, level_doubt, threads, *s.afm, *afm, s.tilt);
     if (!calibrate_again(image, r.surface, *s.model->model, job.calibration.has_value(),
                          job.sem_noise.has_value(), threads, first))
       break;
   }
+  if (levels)
+    told.note(fmt::format("AFM: levelled by the SEM image, too, which tilts it by {:.3f} deg",
+                          std::atan(std::hypot(s.tilt.x, s.tilt.y)) / degrees_to_radians));
   for (const std::string& warning : first.warnings) told.warn(warning);
   if (first.tied)
     told.warn(
@@ -301,13 +373,16 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
 
   begin(told, "reconstruction");
   const AfmData* afm_data = afm ? &*afm : nullptr;
-  const SemData* sem_data = sem ? &*sem : nullptr;
+  SemData* sem_data = sem ? &*sem : nullptr;
+  const std::optional<CorrectionRequest> corrections =
+      job.corrections > 0 ? correction_request(job, s) : std::nullopt;
   std::optional<ReconstructionCheckpoint> checkpoint;
   if (!job.folder.empty()) {
     std::filesystem::create_directories(job.folder);
     checkpoint.emplace(
         job.folder / "checkpoint",
-        identity_of(options_of(job, s), afm_data, sem_data, s.model ? &*s.model : nullptr),
+        identity_of(options_of(job, s), afm_data, sem_data, s.model ? &*s.model : nullptr,
+                    corrections ? &*corrections : nullptr, job.corrections),
         told.on_note);
     if (const auto state = checkpoint->found()) {
       s.resumed = true;
@@ -317,7 +392,12 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
   }
   ReconstructionOptions options = options_of(job, s);
   options.watch = told.watch();
-  s.result = reconstruct(afm_data, sem_data, options, checkpoint ? &*checkpoint : nullptr);
+  ReconstructionCheckpoint* journal = checkpoint ? &*checkpoint : nullptr;
+  if (corrections)
+    s.result = correct_and_reconstruct(afm_data, *sem_data, options, *s.model, *corrections,
+                                       job.corrections, journal, told, s.corrections);
+  else s.result = reconstruct(afm_data, sem_data, options, journal);
+  s.held = what_held(s.result);
   if (job.truth) s.truth = compare_with_truth(s.result, *job.truth);
   s.reasons = reasons_of(s);
   if (!s.reasons.empty()) s.verdict = ReconstructionVerdict::flagged;

@@ -44,7 +44,10 @@ ReconstructionCheckpoint::ReconstructionCheckpoint(const std::filesystem::path& 
   });
   if (!file_.blocks().empty()) {
     const Identity there = identity_in(file_.read(file_.blocks().front()));
-    if (there == identity) return;
+    if (there == identity) {
+      read_rounds();
+      return;
+    }
     if (note)
       note(fmt::format("{} is of another reconstruction ({}): it is begun anew", path.string(),
                        difference(there, identity)));
@@ -53,15 +56,31 @@ ReconstructionCheckpoint::ReconstructionCheckpoint(const std::filesystem::path& 
   file_.append(text_of(identity));
 }
 
-std::optional<ReconstructionState> ReconstructionCheckpoint::found() {
+void ReconstructionCheckpoint::read_rounds() {
   const auto& blocks = file_.blocks();
-  for (std::size_t i = blocks.size(); i > 1; --i)
-    if (auto state = unpack(file_.read(blocks[i - 1]))) return state;
-  return std::nullopt;
+  for (std::size_t i = 1; i < blocks.size(); ++i) {
+    std::string block = file_.read(blocks[i]);
+    if (auto state = unpack(block)) rounds_.back().state = std::move(state);
+    else if (unpack_correction(block)) rounds_.push_back({std::move(block), {}});
+  }
 }
+
+std::optional<ReconstructionState> ReconstructionCheckpoint::found() { return rounds_[now_].state; }
 
 void ReconstructionCheckpoint::keep(const ReconstructionState& state) {
   with_remedy([&] { file_.append(pack(state)); });
+}
+
+std::optional<ModelCorrection> ReconstructionCheckpoint::correction(int round) const {
+  const auto number = static_cast<std::size_t>(round) + 1;
+  return number < rounds_.size() ? unpack_correction(rounds_[number].correction) : std::nullopt;
+}
+
+void ReconstructionCheckpoint::begin_round(int round, const ModelCorrection& correction) {
+  now_ = static_cast<std::size_t>(round) + 1;
+  if (now_ < rounds_.size()) return;
+  rounds_.push_back({pack(correction), {}});
+  with_remedy([&] { file_.append(rounds_.back().correction); });
 }
 
 }  // namespace surf::workflow

@@ -4,28 +4,44 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "checkpoint_file.h"
 #include "job_identity.h"
+#include "model_correction.h"
 #include "surf/reconstruction/reconstruct.h"
 
 namespace surf::workflow {
 
-/// States of a reconstruction in a file, exact to the last bit. The first block identifies the
-/// reconstruction.
+/// States of a reconstruction in a file, exact to the last bit, and the corrections of its rounds.
+/// The first block identifies the reconstruction.
 class ReconstructionCheckpoint : public ReconstructionJournal {
  public:
   /// Replaces a file of another reconstruction and says so through `note`. Throws FileError.
   ReconstructionCheckpoint(const std::filesystem::path& path, const Identity& identity,
                            const NoteCallback& note);
 
+  /// The last state of the round that has begun; before, of the reconstruction without corrections.
   std::optional<ReconstructionState> found() override;
   void keep(const ReconstructionState& state) override;
+  /// The correction of a round, counted from 0, if it is known.
+  std::optional<ModelCorrection> correction(int round) const;
+  /// States are of this round from now on. Keeps the correction if it is new.
+  void begin_round(int round, const ModelCorrection& correction);
   /// Deletes the file, because the work is done.
   void remove() { file_.remove(); }
 
  private:
+  struct Round {
+    std::string correction;  ///< empty for the first
+    std::optional<ReconstructionState> state;
+  };
+
+  void read_rounds();
+
   CheckpointFile file_;
+  std::vector<Round> rounds_{1};
+  std::size_t now_ = 0;
 };
 
 }  // namespace surf::workflow

@@ -58,6 +58,9 @@ Json afm_json(const ReconstructJob& job, const ReconstructSummary& s, const AfmD
   json["pixels"] = {afm.image.z_nm.width(), afm.image.z_nm.height()};
   json["pitch_nm"] = {afm.image.pitch_x_nm, afm.image.pitch_y_nm};
   json["tilt_removed_deg"] = p.tilt_deg;
+  if (s.pose)
+    json["tilt_by_sem"] = {{"slopes", {s.tilt.x, s.tilt.y}},
+                           {"standard_errors", {s.tilt.doubt.x, s.tilt.doubt.y}}};
   json["noise"] = {{"from", p.noise_estimate ? "estimated" : "given"},
                    {"alpha", p.noise.alpha},
                    {"innovation_nm2", p.noise.innovation_nm2},
@@ -223,6 +226,9 @@ ReconstructJob parameters_of(const ReconstructJob& job) {
   out.calibration = job.calibration;
   out.sem_noise = job.sem_noise;
   out.model_error = job.model_error;
+  out.tilt = job.tilt;
+  out.corrections = job.corrections;
+  out.correction_electrons = job.correction_electrons;
   out.upsample = job.upsample;
   out.refine_tip = job.refine_tip;
   out.options = job.options;
@@ -244,7 +250,10 @@ ReconstructJob parameters_used(const ReconstructJob& job, const ReconstructSumma
     used.calibration = {sem->gains, sem->offset};
     used.sem_noise = sem->noise;
   }
-  if (afm && sem) used.pose.transform = s.pose->sem_to_afm;
+  if (afm && sem) {
+    used.pose.transform = s.pose->sem_to_afm;
+    used.tilt = s.tilt;
+  }
   return used;
 }
 
@@ -299,7 +308,16 @@ std::string reconstruction_report(const ReconstructJob& job, const ReconstructSu
   if (!r.sem_discrepancy.empty())
     json["discrepancy"] = {{"allowed_share", job.model_error},
                            {"share_of_contrast", r.sem_discrepancy_share}};
-  if (!r.data_support.empty()) json["surface"]["data_support"] = held_json(r.data_support);
+  for (const CorrectionRound& round : s.corrections)
+    json["corrections"].push_back({{"channels", s.model->model->channels()},
+                                   {"off_share", round.off_share},
+                                   {"error_share", round.error_share},
+                                   {"moved_nm", round.moved_nm},
+                                   {"primaries", round.primaries}});
+  if (!r.data_support.empty()) {
+    json["surface"]["data_support"] = held_json(r.data_support);
+    json["surface"]["held"] = s.held;
+  }
   json["scales"] = scales_json(r.scales);
   if (s.truth) {
     const TruthReport& t = *s.truth;

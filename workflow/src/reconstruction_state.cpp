@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "reconstruction_state.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <limits>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace surf::workflow {
 namespace {
 
-constexpr char mark[] = "semsurf reconstruction 3\n";
+constexpr std::string_view mark = "semsurf reconstruction 3\n",
+                           correction_mark = "semsurf correction 1\n";
 
 /// Writes numbers as 8 bytes each, lowest first.
 class Writer {
  public:
+  explicit Writer(std::string_view first) : bytes(first) {}
   void number(double value) { whole(std::bit_cast<std::uint64_t>(value)); }
   void whole(std::uint64_t value) {
     for (int shift = 0; shift < 64; shift += 8) bytes += static_cast<char>(value >> shift & 0xff);
@@ -28,14 +32,13 @@ class Writer {
     whole(values.size());
     for (const auto value : values) number(static_cast<double>(value));
   }
-  std::string bytes = mark;
+  std::string bytes;
 };
 
 class Reader {
  public:
-  explicit Reader(const std::string& bytes) : bytes_(bytes), at_(sizeof mark - 1) {
-    good_ = bytes.compare(0, at_, mark) == 0;
-  }
+  Reader(const std::string& bytes, std::string_view first)
+      : bytes_(bytes), at_(first.size()), good_(bytes.starts_with(first)) {}
   double number() { return std::bit_cast<double>(whole()); }
   std::uint64_t whole() {
     if (!enough(8)) return 0;
@@ -70,7 +73,7 @@ class Reader {
 
   const std::string& bytes_;
   std::size_t at_;
-  bool good_ = true;
+  bool good_;
 };
 
 void write(Writer& out, const ResidualReport& r) {
@@ -140,7 +143,7 @@ HeightField read_field(Reader& in) {
 }  // namespace
 
 std::string pack(const ReconstructionState& state) {
-  Writer out;
+  Writer out(mark);
   write(out, state.surface);
   const Affine& m = state.sem_to_afm;
   for (const double value : {m.xx, m.xy, m.x0, m.yx, m.yy, m.y0, state.offset}) out.number(value);
@@ -152,7 +155,7 @@ std::string pack(const ReconstructionState& state) {
 }
 
 std::optional<ReconstructionState> unpack(const std::string& bytes) {
-  Reader in(bytes);
+  Reader in(bytes, mark);
   ReconstructionState state;
   state.surface = read_field(in);
   Affine& m = state.sem_to_afm;
@@ -164,6 +167,40 @@ std::optional<ReconstructionState> unpack(const std::string& bytes) {
   for (std::uint64_t i = 0; in.good() && i < scales; ++i) state.scales.push_back(read_scale(in));
   if (!in.finished() || state.surface.z_nm.empty()) return std::nullopt;
   return state;
+}
+
+std::string pack(const ModelCorrection& correction) {
+  Writer out(correction_mark);
+  out.whole(static_cast<std::uint64_t>(correction.primaries));
+  out.number(correction.seconds);
+  out.numbers(correction.mean);
+  out.whole(correction.off.size());
+  for (const ModelImages* images : {&correction.off, &correction.error})
+    for (const Grid<double>& image : *images) {
+      out.whole(static_cast<std::uint64_t>(image.width()));
+      out.numbers(image.data());
+    }
+  return std::move(out.bytes);
+}
+
+std::optional<ModelCorrection> unpack_correction(const std::string& bytes) {
+  Reader in(bytes, correction_mark);
+  ModelCorrection out;
+  out.primaries = static_cast<std::int64_t>(in.whole());
+  out.seconds = in.number();
+  out.mean = in.numbers();
+  const std::uint64_t channels = in.whole();
+  for (ModelImages* images : {&out.off, &out.error})
+    for (std::uint64_t c = 0; in.good() && c < channels; ++c) {
+      const auto width = static_cast<std::size_t>(std::max(in.small(), 1));
+      std::vector<double> values = in.numbers();
+      Grid<double> image(static_cast<int>(width), static_cast<int>(values.size() / width));
+      if (image.size() != values.size()) return std::nullopt;
+      image.data() = std::move(values);
+      images->push_back(std::move(image));
+    }
+  if (!in.finished()) return std::nullopt;
+  return out;
 }
 
 }  // namespace surf::workflow

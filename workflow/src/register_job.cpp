@@ -13,6 +13,7 @@
 #include "surf/io/plot.h"
 #include "surf/io/transform_file.h"
 #include "surf/workflow/step_record.h"
+#include "tip_with_sem.h"
 
 namespace surf::workflow {
 namespace {
@@ -59,8 +60,14 @@ RegisterSummary run(const RegisterJob& job, const Reporter& reporter) {
   if (!job.picture.empty()) io::check_plot_target(job.picture);
   RegisterSummary s;
   s.model = model_of(job.model, job.sem.image, reporter);
-  s.afm = prepare(job.afm, job.threads, reporter);
+  const bool blind = !job.afm.preparation.tip && job.afm.preparation.tip_size == 0;
+  s.afm = prepare(job.afm, job.threads, reporter, !blind);
   s.pose = pose_of(job.pose, s.afm, job.sem.image, s.model, job.threads, reporter);
+  const bool related =
+      s.pose.registration && s.pose.registration->verdict != RegistrationVerdict::unrelated;
+  if (blind && !(related && find_tip_with_sem(s.afm, s.pose, job.pose, job.sem.image, s.model,
+                                              job.threads, reporter)))
+    warn_of_tip(s.afm, reporter);
   if (!job.transform.empty()) io::write_transform(job.transform, transform_file(job, s));
   if (!job.picture.empty()) {
     io::Plot picture = registration_picture(job.sem.image, s.pose.simulated, s.pose.sem_to_afm);

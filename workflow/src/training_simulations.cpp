@@ -95,10 +95,13 @@ mc::Scan scan_of(const TrainingSurface& surface) {
 
 }  // namespace
 
+int samples_per_pixel(const mc::Material& material, double energy_ev, double pixel_nm) {
+  const double range_nm = mc::kanaya_okayama_range_nm(material, energy_ev);
+  return std::clamp(static_cast<int>(std::ceil(5 * pixel_nm / range_nm)), 1, 8);
+}
+
 int samples_per_pixel(const TrainJob& job) {
-  if (job.fine > 0) return job.fine;
-  const double range_nm = mc::kanaya_okayama_range_nm(job.material, job.energy_ev);
-  return std::clamp(static_cast<int>(std::ceil(5 * job.pixel_nm / range_nm)), 1, 8);
+  return job.fine > 0 ? job.fine : samples_per_pixel(job.material, job.energy_ev, job.pixel_nm);
 }
 
 fs::path image_folder(const TrainJob& job) {

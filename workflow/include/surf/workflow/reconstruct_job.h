@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "surf/reconstruction/reconstruct.h"
+#include "surf/reconstruction/tilt_by_sem.h"
 #include "surf/sem/calibration.h"
 #include "surf/workflow/register_job.h"
 
@@ -32,6 +33,12 @@ struct ReconstructJob {
   /// What the model of SEM images may be off by, as a share of the image's contrast: see
   /// `usual_discrepancy`. 0: it is right.
   double model_error = 0.05;
+  /// Rounds in which Monte Carlo images of the surface correct the model, and their electrons per
+  /// pixel. Models of other signals than SE and BSE cannot be corrected.
+  int corrections = 2;
+  std::int64_t correction_electrons = 32;
+  /// Slopes that are added to the levelled scan; absent: found with the SEM image.
+  std::optional<SemTilt> tilt;
   int upsample = 3;  ///< upsampling of the scan, see AfmData
   /// Fit the tip together with the surface; absent: if the tip was found blindly.
   std::optional<bool> refine_tip;
@@ -73,6 +80,15 @@ struct TruthReport {
   std::vector<RegionReport> regions;  ///< those with pixels; none without deviations
 };
 
+/// A round in which Monte Carlo corrected the model of SEM images.
+struct CorrectionRound {
+  std::vector<double> off_share;    ///< per channel: rms of the correction over the mean yield
+  std::vector<double> error_share;  ///< the same of its own error, from few electrons
+  double moved_nm = 0;              ///< rms by which the surface moved, the mean apart
+  std::int64_t primaries = 0;
+  double seconds = 0;  ///< of simulating
+};
+
 enum class ReconstructionVerdict {
   sound,           ///< converged, and the residuals look like noise
   flagged,         ///< there is a result, but check `reasons` first
@@ -91,7 +107,10 @@ struct ReconstructSummary {
   std::optional<SemNoise> sem_noise;
   std::string sem_noise_from;  ///< source of the SEM noise, in words
   std::int64_t saturated = 0;  ///< number of saturated SEM pixels, which are left out
+  SemTilt tilt;  ///< what was added to the levelled scan, given or found with the SEM image
+  std::vector<CorrectionRound> corrections;
   Reconstruction result;
+  std::vector<std::string> held;  ///< which image holds which part of the surface, in words
   std::optional<TruthReport> truth;
   bool resumed = false;
   std::vector<std::filesystem::path> written;

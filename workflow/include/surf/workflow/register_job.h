@@ -81,8 +81,9 @@ struct RegisterSummary {
 };
 
 /// Prepares the scan, predicts the SEM image of the eroded scan at the SEM's pixel size, and
-/// registers the images. Files are written for every verdict, which they state. Throws what its
-/// steps throw.
+/// registers the images. A blind tip is then replaced by one that is found with the SEM image, if
+/// that explains it better, and the images are registered again. Files are written for every
+/// verdict, which they state. Throws what its steps throw.
 RegisterSummary run(const RegisterJob& job, const Reporter& reporter = {});
 
 /// The predicted image of a surface at the model's pixel size: the sum of its channels, valid where

@@ -37,8 +37,10 @@ struct TrainingInput {
   bool has_image() const { return !image.empty() || pixels; }
 };
 
-/// The samples per pixel that a job simulates with: `fine`, or a number from the range of Kanaya
+/// The samples per pixel that surfaces of such pixels are simulated with, by the range of Kanaya
 /// and Okayama.
+int samples_per_pixel(const mc::Material& material, double energy_ev, double pixel_nm);
+/// The same of a job, or its `fine`.
 int samples_per_pixel(const struct TrainJob& job);
 
 /// Options of learning, besides surfaces and images. Each kind of model uses those that concern it.
