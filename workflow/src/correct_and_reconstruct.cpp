@@ -68,8 +68,9 @@ CorrectionRound report_of(const ModelCorrection& correction, const HeightField& 
                           const HeightField& after) {
   CorrectionRound round;
   for (std::size_t c = 0; c < correction.off.size(); ++c) {
-    round.off_share.push_back(rms(correction.off[c]) / correction.mean[c]);
-    round.error_share.push_back(rms(correction.error[c]) / correction.mean[c]);
+    const double mean = correction.mean[c], per_yield = mean > 0 ? 1 / mean : 0;
+    round.off_share.push_back(rms(correction.off[c]) * per_yield);
+    round.error_share.push_back(rms(correction.error[c]) * per_yield);
   }
   round.moved_nm = moved_nm(before.z_nm, after.z_nm);
   round.primaries = correction.primaries;
@@ -80,8 +81,7 @@ CorrectionRound report_of(const ModelCorrection& correction, const HeightField& 
 std::string in_words(const CorrectionRound& round) {
   return fmt::format(
       "Monte Carlo corrects the model by {:.1f} % of the yield, known to {:.1f} %: the surface "
-      "moves "
-      "by {}",
+      "moves by {}",
       100 * *std::ranges::max_element(round.off_share),
       100 * *std::ranges::max_element(round.error_share), format_length(round.moved_nm));
 }

@@ -23,9 +23,9 @@ SimulateJob simulation_of(const HeightField& surface, const PlacedImage& sem,
       mc::HeightFieldBody{"surface", smoothly_upsampled(surface, fine), 0, Edge::mirror};
   scene.beam.energy_ev = scope.energy_ev;
   scene.beam.spot_nm = scope.spot_nm;
-  scene.scan.width = sem.values.width();
-  scene.scan.height = sem.values.height();
   const int width = sem.values.width(), height = sem.values.height();
+  scene.scan.width = width;
+  scene.scan.height = height;
   scene.scan.region = mc::ScanRequest::Region{sem.x_nm(-0.5), sem.y_nm(-0.5), sem.x_nm(width - 0.5),
                                               sem.y_nm(height - 0.5)};
   scene.physics = request.physics;

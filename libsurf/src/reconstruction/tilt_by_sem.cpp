@@ -46,9 +46,9 @@ SemTilt tilt_by_sem(const HeightField& surface, const SemData& sem, const Affine
     const SemTerm::State state = term.evaluate(z, mixture);
     constexpr int unknowns = 4;
     std::array<Grid<double>, unknowns> columns, weighed;
-    const Grid<double> level(width, height);
+    const Grid<double> unmoved(width, height);
     for (int k = 0; k < unknowns; ++k) {
-      columns[k] = term.change(state, mixture, k < 2 ? planes[k] : level,
+      columns[k] = term.change(state, mixture, k < 2 ? planes[k] : unmoved,
                                {k == 2 ? 1.0 : 0.0, k == 3 ? 1.0 : 0.0});
       weighed[k] = term.precision(state, columns[k]);
     }
@@ -69,6 +69,7 @@ SemTilt tilt_by_sem(const HeightField& surface, const SemData& sem, const Affine
     matrix(1, 1) += 1 / (doubt.y * doubt.y),
         gradient(1) += (tilt.y - before.y) / (doubt.y * doubt.y);
     const Eigen::Matrix4d covariance = matrix.inverse();
+    if (!covariance.allFinite()) break;  // nothing but a constant: gain and offset are one
     const Eigen::Vector4d step = -(covariance * gradient);
     tilt.x += step(0), tilt.y += step(1);
     for (std::size_t c = 0; c + 1 < mixture.size(); ++c) mixture[c] *= 1 + step(2);

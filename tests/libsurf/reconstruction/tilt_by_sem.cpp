@@ -49,6 +49,15 @@ TEST(TiltBySem, KeepsToWhatIsKnown) {
   EXPECT_EQ(none.iterations, 0);
 }
 
+TEST(TiltBySem, FlatGroundIsNotTilted) {
+  const test::SmallScene scene(3, 56, 40, 1, [](Point2) { return 5.0; });
+  const SemTilt tilt =
+      tilt_by_sem(scene.truth, scene.sem, scene.sem.sem_to_afm, {0, 0, {1e-3, 1e-3}}, 1);
+  EXPECT_NEAR(tilt.x, 0, 1e-6);
+  EXPECT_NEAR(tilt.y, 0, 1e-6);
+  EXPECT_NEAR(tilt.doubt.x, 1e-3, 1e-6);
+}
+
 TEST(TiltBySem, WhatTheModelMayBeOffByMakesItDoubtful) {
   test::SmallScene scene(3, 56, 40, 1, test::rough_height);
   const SemTilt sure =
