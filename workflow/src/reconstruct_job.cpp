@@ -11,11 +11,13 @@
 #include "compare_truth.h"
 #include "correct_and_reconstruct.h"
 #include "first_calibration.h"
+#include "judge_places.h"
 #include "job_identity.h"
 #include "reconstruction_checkpoint.h"
 #include "reconstruction_output.h"
 #include "reconstruction_report.h"
 #include "registration_picture.h"
+#include "sem_preparation.h"
 #include "surf/core/error.h"
 #include "surf/core/instruction_set.h"
 #include "surf/core/units.h"
@@ -23,7 +25,6 @@
 #include "surf/io/plot.h"
 #include "surf/io/sim/materials.h"
 #include "surf/io/transform_file.h"
-#include "surf/reconstruction/tilt_by_sem.h"
 #include "surf/workflow/step_record.h"
 #include "surf/workflow/version.h"
 #include "tip_with_sem.h"
@@ -32,7 +33,6 @@
 namespace surf::workflow {
 namespace {
 
-constexpr int coarse_iterations = 12;  // per scale, of a coarse reconstruction for the calibration
 constexpr double least_deviation = 0.9, largest_deviation = 1.15,
                  largest_correlation = 0.1;  // of whitened residuals
 
@@ -154,6 +154,12 @@ std::vector<std::string> reasons_of(const ReconstructSummary& s) {
   }
   if (s.afm && !s.afm->tip.doubt.empty())
     reasons.push_back(fmt::format("the AFM tip is not to be trusted: {}", s.afm->tip.doubt));
+  if (s.rival)
+    reasons.push_back(fmt::format(
+        "another surface explains both images, with a probability of {:.2g}; it differs in {:.0f} % "
+        "of its heights: see rival.vti, and say by landmarks or `registration.transform` which "
+        "place is meant",
+        s.rival->probability, 100 * s.rival->share_apart));
   if (s.pose && !s.pose->verified())
     reasons.push_back(fmt::format(
         "the registration is {} ({}): walls may be displaced by {:.2g} pixels, which the "
@@ -235,90 +241,6 @@ class Warnings {
   Reporter told_;
 };
 
-/// Tilts the scan about the middle of the SEM image.
-void tilt_scan(const SemTilt& by, const PlacedImage& sem, const Affine& map, PreparedAfm& prepared,
-               AfmData& afm) {
-  const Point2 middle =
-      map(sem.place_nm(0.5 * (sem.values.width() - 1), 0.5 * (sem.values.height() - 1)));
-  const Plane back{0, -by.x, -by.y, middle.x, middle.y};
-  subtract(prepared.image, back);
-  subtract(prepared.certainty.surface, back);
-  prepared.level_doubt = by.doubt;
-  afm.image = prepared.image;
-  afm.level_doubt = by.doubt;
-}
-
-/// Levels the scan by the SEM image, too: `found` is what it has been tilted by so far.
-void level_by_sem(const HeightField& surface, const SemData& sem, const Affine& map,
-                  const SlopeDoubt& doubt, int threads, PreparedAfm& prepared, AfmData& afm,
-                  SemTilt& found) {
-  const SemTilt more = tilt_by_sem(surface, sem, map, {-found.x, -found.y, doubt}, threads);
-  found = {found.x + more.x, found.y + more.y, more.doubt};
-  tilt_scan(more, sem.image, sem.sem_to_afm, prepared, afm);
-}
-
-/// Calibrates the SEM image and estimates its noise. With a scan both are found twice: the eroded
-/// scan is too broad where it matters, so a first, coarse reconstruction replaces it (at most
-/// `rounds` times).
-SemData sem_data(const ReconstructJob& job, ReconstructSummary& s, const PlacedImage& image,
-                 AfmData* afm, const Reporter& told) {
-  begin(told, "calibration");
-  const SlopeDoubt level_doubt = afm ? afm->level_doubt : SlopeDoubt{};
-  const bool levels = afm && !job.tilt && level_doubt.x > 0 && level_doubt.y > 0;
-  constexpr int rounds = 2;
-  const HeightField* eroded = s.afm ? &s.afm->eroded() : nullptr;
-  const Affine map = s.pose ? s.pose->sem_to_afm : Affine{};
-  const int threads = job.options.threads;
-  FirstCalibration first =
-      calibrate_first(image, eroded, *s.model->model, map, job.calibration, job.sem_noise, threads);
-  const auto data = [&] {
-    return SemData{image,
-                   s.model->model,
-                   first.gains,
-                   first.offset,
-                   first.noise,
-                   map,
-                   usual_discrepancy(image, job.model_error)};
-  };
-  const bool calibrates = !(job.calibration && job.sem_noise);
-  if (afm && job.tilt) s.tilt = *job.tilt, tilt_scan(s.tilt, image, map, *s.afm, *afm);
-  for (int round = 0; afm && (calibrates || levels) && round < rounds; ++round) {
-    ReconstructionOptions coarse;
-    coarse.scales_px = {
-        default_scales_px(coarse.method, image.values.width(), image.values.height()).front()};
-    coarse.iterations = coarse_iterations;
-    coarse.refine_calibration = !first.tied && !job.calibration;
-    coarse.refine_transform = job.options.refine_transform;
-    coarse.refine_tip = options_of(job, s).refine_tip;
-    coarse.curvature_prior_per_nm = job.options.curvature_prior_per_nm;
-    coarse.uncertainty = false;
-    coarse.rough_ground = s.afm && s.afm->rough_ground;
-    coarse.threads = threads;
-    coarse.watch = told.watch().part(double(round) / rounds, double(round + 1) / rounds);
-    const SemData sem = data();
-    const Reconstruction r = reconstruct(afm, &sem, coarse);
-    if (levels)
-      level_by_sem(r.surface, sem, r.sem_to_afm, level_doubt, threads, *s.afm, *afm, s.tilt);
-    if (!calibrate_again(image, r.surface, *s.model->model, job.calibration.has_value(),
-                         job.sem_noise.has_value(), threads, first))
-      break;
-  }
-  if (levels)
-    told.note(fmt::format("AFM: levelled by the SEM image, too, which tilts it by {:.3f} deg",
-                          std::atan(std::hypot(s.tilt.x, s.tilt.y)) / degrees_to_radians));
-  for (const std::string& warning : first.warnings) told.warn(warning);
-  if (first.tied)
-    told.warn(
-        "the channels of the model cannot be told apart in the SEM image, so all have one gain; "
-        "say `reconstruction.gains` if you "
-        "know them");
-  s.gains_tied = first.tied;
-  s.calibration = first.fit;
-  s.sem_noise = first.noise;
-  s.sem_noise_from = first.noise_from;
-  return data();
-}
-
 }  // namespace
 
 ReconstructionOptions options_of(const ReconstructJob& job, const ReconstructSummary& s) {
@@ -369,7 +291,8 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
   std::optional<SemData> sem;
   if (job.afm)
     afm = AfmData{s.afm->image, s.afm->tip, s.afm->noise, job.upsample, s.afm->level_doubt};
-  if (job.sem) sem = sem_data(job, s, image, afm ? &*afm : nullptr, told);
+  if (afm && job.sem) judge_places(job, s, image, *afm, told);
+  if (job.sem) sem = prepare_sem(job, s, image, afm ? &*afm : nullptr, told);
 
   begin(told, "reconstruction");
   const AfmData* afm_data = afm ? &*afm : nullptr;
@@ -397,6 +320,7 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
     s.result = correct_and_reconstruct(afm_data, *sem_data, options, *s.model, *corrections,
                                        job.corrections, journal, told, s.corrections);
   else s.result = reconstruct(afm_data, sem_data, options, journal);
+  if (afm && sem) s.rival = rival_surface(job, s, *afm, *sem, told);
   s.held = what_held(s.result);
   if (job.truth) s.truth = compare_with_truth(s.result, *job.truth);
   s.reasons = reasons_of(s);

@@ -90,9 +90,8 @@ Mask certain_on(const HeightField& surface, const CertaintyMap& map, const Affin
   return certain;
 }
 
-/// The surface and everything known about its heights.
-Image surface_image(const ReconstructSummary& s, const Metadata& made) {
-  const Reconstruction& r = s.result;
+/// A surface and everything known about its heights.
+Image surface_image(const ReconstructSummary& s, const Reconstruction& r, const Metadata& made) {
   Image image = placed_like(r.surface, made);
   image.channels.push_back(channel("z_nm", "nm", r.surface.z_nm));
   if (!r.deviation_nm.empty())
@@ -179,7 +178,7 @@ std::vector<fs::path> reconstruction_files(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const char* name :
        {"surface.vti", "surface.gsf", "surface.glb", "simulated_afm.vti", "simulated_sem.vti",
-        "tip.txt", "first_tip.txt", "model.json", "transform.json", "registration.png",
+        "rival.vti", "rival_transform.json", "tip.txt", "first_tip.txt", "model.json", "transform.json", "registration.png",
         "history.csv", "panel.png", "report.json", "checkpoint"})
     files.push_back(folder / name);
   return files;
@@ -196,7 +195,7 @@ std::vector<fs::path> write_reconstruction(const ReconstructJob& job, const Reco
   const fs::path model = job.folder / "model.json";
   if (sem) io::write_model(model, s.model->trained);
   const Metadata made = made_by(job, s, afm, sem, model);
-  io::write_image(file("surface.vti"), surface_image(s, made));
+  io::write_image(file("surface.vti"), surface_image(s, r, made));
   io::write_height_field(file("surface.gsf"), r.surface, made);
   io::write_surfaces(file("surface.glb"), surface_scene(r, made));
   if (afm) {
@@ -215,6 +214,14 @@ std::vector<fs::path> write_reconstruction(const ReconstructJob& job, const Reco
     transform.notes = made;
     transform.verdict = "as it is after the reconstruction";
     io::write_transform(file("transform.json"), transform);
+  }
+  if (s.rival) {
+    io::write_image(file("rival.vti"), surface_image(s, s.rival->found, made));
+    io::TransformFile transform;
+    transform.sem_to_afm = s.rival->found.sem_to_afm;
+    transform.notes = made;
+    transform.verdict = fmt::format("a rival with a probability of {:.2g}", s.rival->probability);
+    io::write_transform(file("rival_transform.json"), transform);
   }
   io::write_text(file("history.csv"), history_text(r.scales));
   if (job.picture) {

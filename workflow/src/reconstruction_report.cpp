@@ -150,6 +150,17 @@ Json pose_json(const ReconstructJob& job, const ReconstructSummary& s) {
     one["distance_px"] = number(rival.distance_px);
     json["rivals"].push_back(one);
   }
+  for (const JudgedPlace& place : pose.places) {
+    Json one = map_json(place.sem_to_afm);
+    one["disagreement"] = number(place.disagreement);
+    one["probability"] = number(place.probability);
+    one["explained"] = place.explained;
+    json["judged_by_both_images"].push_back(one);
+  }
+  if (s.rival)
+    json["rival_surface"] = {{"probability", number(s.rival->probability)},
+                             {"share_of_heights_apart", number(s.rival->share_apart)},
+                             {"transform", map_json(s.rival->found.sem_to_afm)}};
   return json;
 }
 

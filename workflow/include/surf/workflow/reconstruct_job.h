@@ -89,6 +89,13 @@ struct CorrectionRound {
   double seconds = 0;  ///< of simulating
 };
 
+/// Another surface, at another place in the scan, that explains both images.
+struct RivalSurface {
+  Reconstruction found;
+  double probability = 0;  ///< of its place, among those that were judged
+  double share_apart = 0;  ///< of heights that differ by more than two deviations of the difference
+};
+
 enum class ReconstructionVerdict {
   sound,           ///< converged, and the residuals look like noise
   flagged,         ///< there is a result, but check `reasons` first
@@ -110,6 +117,7 @@ struct ReconstructSummary {
   SemTilt tilt;  ///< what was added to the levelled scan, given or found with the SEM image
   std::vector<CorrectionRound> corrections;
   Reconstruction result;
+  std::optional<RivalSurface> rival;
   std::vector<std::string> held;  ///< which image holds which part of the surface, in words
   std::optional<TruthReport> truth;
   bool resumed = false;
@@ -118,7 +126,8 @@ struct ReconstructSummary {
 
 /// Runs the whole chain and writes into `folder`: surface.vti, .gsf and .glb, simulated_afm.vti,
 /// simulated_sem.vti, history.csv, transform.json, tip.txt (and first_tip.txt if the tip was
-/// fitted), model.json, report.json, panel.png. While it runs, a file `checkpoint` there holds the
+/// fitted), model.json, report.json, panel.png; rival.vti and rival_transform.json where another
+/// surface explains both images as well. While it runs, a file `checkpoint` there holds the
 /// state after each scale: the same job, started again after cancellation (Interrupted is thrown)
 /// or a crash, continues from it to the same bytes. A checkpoint of another job is discarded. If
 /// the images seem unrelated, only transform.json and registration.png are written. Throws

@@ -48,6 +48,14 @@ struct PoseOptions {
 /// The parameters registration.objective, registration.transform and so on; not the landmarks.
 void describe(ParameterVisitor& visit, PoseOptions& options);
 
+/// A place of the SEM image in the scan, judged by how well one surface explains both images there.
+struct JudgedPlace {
+  Affine sem_to_afm;
+  double disagreement = 0;  ///< negative log-likelihood of that surface, less the likeliest place's
+  double probability = 1;   ///< among the places that were judged, (0, 1]
+  bool explained = true;    ///< a surface leaves hardly more than noise of both images there
+};
+
 struct Pose {
   Affine sem_to_afm;
   std::optional<LandmarkFit> landmarks;
@@ -56,9 +64,15 @@ struct Pose {
   /// SEM image predicted from the eroded scan, in the AFM's frame; the SEM image was registered to
   /// it.
   PlacedImage simulated;
+  /// Places that rival each other, judged by both images, likeliest first. Empty: there were none.
+  std::vector<JudgedPlace> places;
 
+  /// Both images together say which of the rival places is meant.
+  bool decided() const {
+    return !places.empty() && places.front().explained && places.front().probability >= 0.95;
+  }
   bool verified() const {
-    return !registration || registration->verdict == RegistrationVerdict::verified;
+    return !registration || registration->verdict == RegistrationVerdict::verified || decided();
   }
 };
 

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "judge_places.h"
+
+#include <cmath>
+
+#include "hilly_pair.h"
+#include "surf/afm/morphology.h"
+
+namespace surf::workflow {
+namespace {
+
+constexpr Affine elsewhere{1, 0, 110, 0, 1, 20};
+
+/// The images of HillyPair with a registration that hesitates between two places.
+class JudgePlaces : public HillyPair {
+ protected:
+  JudgePlaces() {
+    job_.tilt.reset();
+    summary_.afm = prepare_afm(job_.afm->scan, job_.afm->preparation);
+    ModelRequest request = job_.model;
+    request.pixel_nm = pitch;
+    summary_.model = find_model(request, {});
+    afm_ = {summary_.afm->image, summary_.afm->tip, summary_.afm->noise, job_.upsample, {}};
+  }
+
+  void hesitate(const Affine& found, const Affine& rival) {
+    summary_.pose.emplace();
+    summary_.pose->sem_to_afm = found;
+    summary_.pose->registration.emplace();
+    summary_.pose->registration->verdict = RegistrationVerdict::ambiguous;
+    summary_.pose->registration->rivals = {{rival, 0.9, 12}};
+  }
+
+  ReconstructSummary summary_;
+  AfmData afm_;
+};
+
+TEST_F(JudgePlaces, TheSurfaceThatExplainsBothImagesSaysWhichPlaceIsMeant) {
+  hesitate(elsewhere, shift);
+  EXPECT_FALSE(summary_.pose->verified());
+  judge_places(job_, summary_, job_.sem->image, afm_, {});
+  EXPECT_NEAR(summary_.pose->sem_to_afm.x0, shift.x0, 0.5 * pitch);
+  EXPECT_NEAR(summary_.pose->sem_to_afm.y0, shift.y0, 0.5 * pitch);
+  EXPECT_GT(summary_.pose->places.front().probability, 0.99);
+  EXPECT_TRUE(summary_.pose->verified());
+}
+
+TEST_F(JudgePlaces, APlaceWithoutRivalsStays) {
+  hesitate(elsewhere, shift);
+  summary_.pose->registration->rivals.clear();
+  judge_places(job_, summary_, job_.sem->image, afm_, {});
+  EXPECT_EQ(summary_.pose->sem_to_afm, elsewhere);
+  EXPECT_FALSE(summary_.pose->verified());
+}
+
+/// An SEM image of nothing but noise agrees with any place.
+TEST_F(JudgePlaces, TwoSurfacesThatBothExplainTheImagesAreBothGiven) {
+  PlacedImage& image = job_.sem->image;
+  image.values = Grid<double>(50, 40, 100.0);
+  const Grid<double> noise = simulate_noise({0, 400}, 50, 40, 9);
+  for (std::size_t i = 0; i < noise.size(); ++i) image.values.data()[i] += noise.data()[i];
+  job_.calibration = GivenCalibration{{0.01, 0.01}, 100};
+  job_.sem_noise = SemNoise{0, 400, 1e-3};
+  job_.options.refine_transform = false;
+  hesitate(shift, elsewhere);
+  judge_places(job_, summary_, image, afm_, {});
+  ASSERT_EQ(summary_.pose->places.size(), 2u);
+  EXPECT_FALSE(summary_.pose->verified());
+
+  const SemData sem{image, summary_.model->model, {0.01, 0.01}, 100, *job_.sem_noise,
+                    summary_.pose->sem_to_afm};
+  summary_.result = reconstruct(&afm_, &sem, job_.options);
+  const auto rival = rival_surface(job_, summary_, afm_, sem, {});
+  ASSERT_TRUE(rival.has_value());
+  EXPECT_GT(rival->share_apart, 0.3);
+  EXPECT_GT(rival->probability, 0.05);
+
+  summary_.pose->places[1].sem_to_afm = summary_.pose->places[0].sem_to_afm;
+  EXPECT_FALSE(rival_surface(job_, summary_, afm_, sem, {}).has_value());  // the same surface
+}
+
+}  // namespace
+}  // namespace surf::workflow

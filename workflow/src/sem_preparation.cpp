@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sem_preparation.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "chain_steps.h"
+#include "first_calibration.h"
+#include "surf/core/units.h"
+#include "surf/reconstruction/tilt_by_sem.h"
+
+namespace surf::workflow {
+namespace {
+
+constexpr int coarse_iterations = 12;
+
+/// Tilts the scan about the middle of the SEM image.
+void tilt_scan(const SemTilt& by, const PlacedImage& sem, const Affine& map, PreparedAfm& prepared,
+               AfmData& afm) {
+  const Point2 middle =
+      map(sem.place_nm(0.5 * (sem.values.width() - 1), 0.5 * (sem.values.height() - 1)));
+  const Plane back{0, -by.x, -by.y, middle.x, middle.y};
+  subtract(prepared.image, back);
+  subtract(prepared.certainty.surface, back);
+  prepared.level_doubt = by.doubt;
+  afm.image = prepared.image;
+  afm.level_doubt = by.doubt;
+}
+
+/// Levels the scan by the SEM image, too: `found` is what it has been tilted by so far.
+void level_by_sem(const HeightField& surface, const SemData& sem, const Affine& map,
+                  const SlopeDoubt& doubt, int threads, PreparedAfm& prepared, AfmData& afm,
+                  SemTilt& found) {
+  const SemTilt more = tilt_by_sem(surface, sem, map, {-found.x, -found.y, doubt}, threads);
+  found = {found.x + more.x, found.y + more.y, more.doubt};
+  tilt_scan(more, sem.image, sem.sem_to_afm, prepared, afm);
+}
+
+}  // namespace
+
+ReconstructionOptions coarse_options(const ReconstructJob& job, const ReconstructSummary& s,
+                                     bool gains_tied) {
+  const Grid<double>& image = job.sem->image.values;
+  ReconstructionOptions coarse;
+  coarse.scales_px = {default_scales_px(coarse.method, image.width(), image.height()).front()};
+  coarse.iterations = coarse_iterations;
+  coarse.refine_calibration = !gains_tied && !job.calibration;
+  coarse.refine_transform = job.options.refine_transform;
+  coarse.refine_tip = options_of(job, s).refine_tip;
+  coarse.curvature_prior_per_nm = job.options.curvature_prior_per_nm;
+  coarse.uncertainty = false;
+  coarse.rough_ground = s.afm && s.afm->rough_ground;
+  coarse.threads = job.options.threads;
+  return coarse;
+}
+
+SemData prepare_sem(const ReconstructJob& job, ReconstructSummary& s, const PlacedImage& image,
+                 AfmData* afm, const Reporter& told) {
+  begin(told, "calibration");
+  const SlopeDoubt level_doubt = afm ? afm->level_doubt : SlopeDoubt{};
+  const bool levels = afm && !job.tilt && level_doubt.x > 0 && level_doubt.y > 0;
+  constexpr int rounds = 2;
+  const HeightField* eroded = s.afm ? &s.afm->eroded() : nullptr;
+  const Affine map = s.pose ? s.pose->sem_to_afm : Affine{};
+  const int threads = job.options.threads;
+  FirstCalibration first =
+      calibrate_first(image, eroded, *s.model->model, map, job.calibration, job.sem_noise, threads);
+  const auto data = [&] {
+    return SemData{image,
+                   s.model->model,
+                   first.gains,
+                   first.offset,
+                   first.noise,
+                   map,
+                   usual_discrepancy(image, job.model_error)};
+  };
+  const bool calibrates = !(job.calibration && job.sem_noise);
+  if (afm && job.tilt) s.tilt = *job.tilt, tilt_scan(s.tilt, image, map, *s.afm, *afm);
+  for (int round = 0; afm && (calibrates || levels) && round < rounds; ++round) {
+    ReconstructionOptions coarse = coarse_options(job, s, first.tied);
+    coarse.watch = told.watch().part(double(round) / rounds, double(round + 1) / rounds);
+    const SemData sem = data();
+    const Reconstruction r = reconstruct(afm, &sem, coarse);
+    if (levels)
+      level_by_sem(r.surface, sem, r.sem_to_afm, level_doubt, threads, *s.afm, *afm, s.tilt);
+    if (!calibrate_again(image, r.surface, *s.model->model, job.calibration.has_value(),
+                         job.sem_noise.has_value(), threads, first))
+      break;
+  }
+  if (levels)
+    told.note(fmt::format("AFM: levelled by the SEM image, too, which tilts it by {:.3f} deg",
+                          std::atan(std::hypot(s.tilt.x, s.tilt.y)) / degrees_to_radians));
+  for (const std::string& warning : first.warnings) told.warn(warning);
+  if (first.tied)
+    told.warn(
+        "the channels of the model cannot be told apart in the SEM image, so all have one gain; "
+        "say `reconstruction.gains` if you "
+        "know them");
+  s.gains_tied = first.tied;
+  s.calibration = first.fit;
+  s.sem_noise = first.noise;
+  s.sem_noise_from = first.noise_from;
+  return data();
+}
+
+}  // namespace surf::workflow
