@@ -69,12 +69,13 @@ HeightField in_sem_frame(const HeightField& surface, const Scene& s) {
 void print_costs(const Scene& s) {
   using namespace reconstruction;
   const SurfaceFrame frame = frame_of(&s.afm, &s.sem, 12);
-  Objective o{{}, {}, CurvaturePrior(frame.pitch_nm, 2e-3), frame, true, true, 0, {}};
+  Objective o{.prior = CurvaturePrior(frame.pitch_nm, 2e-3), .frame = frame};
+  o.fit_map = o.fit_mixture = true;
   const HeightField outside = eroded(s.afm, 0);
   o.afm.emplace(s.afm, outside, frame, s.sem.sem_to_afm, 0);
   o.sem.emplace(s.sem, frame, 12, 12, 0);
-  Unknowns at{on_frame(outside, frame, s.sem.sem_to_afm), s.sem.sem_to_afm, s.sem.gains};
-  at.mixture.push_back(s.sem.offset);
+  Unknowns at{
+      on_frame(outside, frame, s.sem.sem_to_afm), s.sem.sem_to_afm, {s.sem.gains, s.sem.offset}};
   const Objective::State state = o.evaluate(at);
   const Step g = o.gradient(at, state);
   Preconditioner m(Preconditioner::usual_tile_px, 0);

@@ -149,12 +149,13 @@ void print_machine() {
 
 void print_systems(const Scene& s, const Grid<double>* surface) {
   const SurfaceFrame frame = frame_of(&s.afm, &s.sem, 12);
-  Objective o{{}, {}, CurvaturePrior(frame.pitch_nm, 2e-3), frame, true, true, 0, {}};
+  Objective o{.prior = CurvaturePrior(frame.pitch_nm, 2e-3), .frame = frame};
+  o.fit_map = o.fit_mixture = true;
   const HeightField outside = eroded(s.afm, 0);
   o.afm.emplace(s.afm, outside, frame, s.sem.sem_to_afm, 0);
   o.sem.emplace(s.sem, frame, 12, 12, 0);
-  Unknowns at{on_frame(outside, frame, s.sem.sem_to_afm), s.sem.sem_to_afm, s.sem.gains};
-  at.mixture.push_back(s.sem.offset);
+  Unknowns at{
+      on_frame(outside, frame, s.sem.sem_to_afm), s.sem.sem_to_afm, {s.sem.gains, s.sem.offset}};
   if (surface)
     for (int y = 0; y < surface->height(); ++y)
       for (int x = 0; x < surface->width(); ++x) at.z_nm(x + 12, y + 12) = (*surface)(x, y);

@@ -29,5 +29,32 @@ TEST(CompareTruth, TakesOffTheMedianAndCountsWhatIsCovered) {
     if (region.pixels > 100) EXPECT_NEAR(region.coverage_2, 0.75, 0.1) << region.name;
 }
 
+/// A trench whose walls are displaced by 4 nm to the right, where 3 nm are stated.
+TEST(CompareTruth, JudgesWallsByTheirPlace) {
+  HeightField truth;
+  truth.pitch_x_nm = truth.pitch_y_nm = 10;
+  truth.z_nm = Grid<double>(80, 20);
+  const auto height = [](double x_nm) {
+    return 60 - 60 * std::clamp((x_nm - 200) / 30, 0.0, 1.0) +
+           60 * std::clamp((x_nm - 500) / 30, 0.0, 1.0);
+  };
+  Reconstruction r;
+  r.surface = truth;
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 80; ++x) {
+      truth.z_nm(x, y) = height(truth.x_nm(x));
+      r.surface.z_nm(x, y) = height(truth.x_nm(x) - 4);
+    }
+  r.deviation_nm = Grid<double>(80, 20, 6.0);  // 3 nm along x at a slope of 2
+  const TruthReport report = compare_with_truth(r, truth);
+  const RegionReport& edge = report.regions.back();
+  ASSERT_EQ(edge.name, "edge");
+  EXPECT_EQ(edge.pixels, 40);
+  EXPECT_NEAR(edge.rms_nm, 4, 1e-6);
+  EXPECT_NEAR(edge.stated_nm, 3, 1e-6);
+  EXPECT_EQ(edge.coverage_1, 0);
+  EXPECT_EQ(edge.coverage_2, 1);
+}
+
 }  // namespace
 }  // namespace surf::workflow

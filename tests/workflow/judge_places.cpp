@@ -67,8 +67,8 @@ TEST_F(JudgePlaces, TwoSurfacesThatBothExplainTheImagesAreBothGiven) {
   ASSERT_EQ(summary_.pose->places.size(), 2u);
   EXPECT_FALSE(summary_.pose->verified());
 
-  const SemData sem{image, summary_.model->model, {0.01, 0.01}, 100, *job_.sem_noise,
-                    summary_.pose->sem_to_afm};
+  const SemData sem{image, summary_.model->model, {0.01, 0.01},
+                    100,   *job_.sem_noise,       summary_.pose->sem_to_afm};
   summary_.result = reconstruct(&afm_, &sem, job_.options);
   const auto rival = rival_surface(job_, summary_, afm_, sem, {});
   ASSERT_TRUE(rival.has_value());

@@ -142,6 +142,31 @@ TEST(SampleJob, MakesWhatAModelDoesNotKnow) {
   EXPECT_NEAR(gain(0, 0), 1, 1e-4);
   EXPECT_NEAR(gain(job.width / 2, 0), 1.2, 1e-3);
   EXPECT_NE(bytes_of(usual.path() / "truth_sem.exr"), bytes_of(other.path() / "truth_sem.exr"));
+
+  const test::TemporaryFolder third;
+  job.folder = third.path();
+  job.gain_drift = 0;
+  job.spot_nm = 8;
+  job.detector = "in-lens";
+  job.scan_drift_px = 3;
+  job.line_jitter_px = 0.5;
+  run(job);
+  const Image narrow = io::read_image(third.path() / "truth_sem.exr");
+  const auto mean = [](const Image& image, const char* channel) {
+    double sum = 0;
+    for (const float v : image.find(channel)->values.data()) sum += v;
+    return sum;
+  };
+  EXPECT_LT(mean(narrow, "SE-in-lens"), 0.8 * mean(narrow, "SE"));
+  EXPECT_NE(bytes_of(other.path() / "afm.gsf"), bytes_of(third.path() / "afm.gsf"));
+  const auto record = nlohmann::json::parse(bytes_of(third.path() / "truth.json"));
+  EXPECT_EQ(record.at("sem").at("spot_nm"), 8);
+  EXPECT_EQ(record.at("sem").at("detector"), "in-lens");
+  EXPECT_EQ(record.at("sem").at("line_jitter_px"), 0.5);
+  EXPECT_EQ(record.at("afm").at("drift_px"), 3);
+  job.detector = "quadrants";
+  EXPECT_THROW(run(job), UsageError);
+  job.detector.clear();
   job.tip_lean_deg = 40;  // more than the half angle
   EXPECT_THROW(run(job), UsageError);
 }

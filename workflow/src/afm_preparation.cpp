@@ -115,6 +115,7 @@ void search_round_tip(PreparedAfm& prepared, const AfmPreparationOptions& o, con
       prepared.image,
       {.noise = prepared.noise, .seed = o.seed, .threads = o.threads, .watch = watch});
   prepared.tip = std::move(found.tip);
+  prepared.tip_bound = std::move(found.bound);
   prepared.tip_threshold_nm = found.summary.threshold_nm;
   prepared.tip_round = true;
   if (!found.summary.bounded) {

@@ -251,6 +251,11 @@ void describe(ParameterVisitor& visit, ReconstructJob& job) {
                  "by other physics, another detector, contamination",
          .unit = Unit::share,
          .limits = within(0, 1)});
+    visit(job.line_jitter_px,
+          {.name = "reconstruction.line_jitter",
+           .help = "By how many pixels the SEM image's rows may be displaced along themselves, as "
+                   "a standard deviation",
+           .limits = within(0, 5)});
     visit(job.corrections,
           {.name = "reconstruction.corrections",
            .help = "Most rounds in which Monte Carlo images of the surface correct the model of "

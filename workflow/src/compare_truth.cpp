@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "edge_places.h"
 #include "sem_frame.h"
 #include "surf/afm/background.h"
 #include "surf/core/error.h"
@@ -157,6 +158,8 @@ TruthReport compare_with_truth(const Reconstruction& result, const HeightField& 
     report.coverage_1 = report.regions.front().coverage_1;
     report.coverage_2 = report.regions.front().coverage_2;
     report.regions.erase(report.regions.begin());
+    const RegionReport edges = edge_places(result, there, d.middle);
+    if (edges.pixels > 0) report.regions.push_back(edges);
   }
   subtract(d.less, fit_plane(d.less));
   report.plane_rms_nm = rms_of(d.less);

@@ -34,8 +34,8 @@ double objective_of(const Reconstruction& r) {
 /// likelihoods seem larger than they are.
 double excess(const Reconstruction& r) {
   const ScaleReport& last = r.scales.back();
-  return std::max({1.0, std::pow(last.afm_residual.deviation, 2),
-                   std::pow(last.sem_residual.deviation, 2)});
+  return std::max(
+      {1.0, std::pow(last.afm_residual.deviation, 2), std::pow(last.sem_residual.deviation, 2)});
 }
 
 /// The SEM's noise may be taken for too large where flat places are missing.
@@ -54,8 +54,8 @@ std::vector<Candidate> candidates_of(const ReconstructJob& job, const Reconstruc
   for (const Affine& map : maps) {
     try {
       out.push_back({map,
-                     calibrate_first(image, &s.afm->eroded(), *s.model->model, map,
-                                     job.calibration, job.sem_noise, job.options.threads),
+                     calibrate_first(image, &s.afm->eroded(), *s.model->model, map, job.calibration,
+                                     job.sem_noise, job.options.threads),
                      {}});
     } catch (const InvalidInput&) {
       // The images have nothing in common there.
@@ -67,8 +67,7 @@ std::vector<Candidate> candidates_of(const ReconstructJob& job, const Reconstruc
 /// All candidates are judged by the noise of the one that explains most.
 SemNoise least_noise(const std::vector<Candidate>& all, const PlacedImage& image) {
   double level = 0;
-  for (const double v : image.values.data())
-    level += v / static_cast<double>(image.values.size());
+  for (const double v : image.values.data()) level += v / static_cast<double>(image.values.size());
   return std::ranges::min(all, {},
                           [&](const Candidate& c) { return c.calibration.noise.variance(level); })
       .calibration.noise;
@@ -152,16 +151,14 @@ void judge_places(const ReconstructJob& job, ReconstructSummary& s, const Placed
       const auto part = [&](std::size_t k) {
         return from + (to - from) * static_cast<double>(k) / static_cast<double>(all.size());
       };
-      fit(all[i], job, s, image, afm, noise, closely,
-          reporter.watch().part(part(i), part(i + 1)));
+      fit(all[i], job, s, image, afm, noise, closely, reporter.watch().part(part(i), part(i + 1)));
     }
     likeliest_first(all);
   };
   fit_all(false, 0, 0.3);
   const double best = all.front().value, scale = excess(all.front().found);
-  std::erase_if(all, [&](const Candidate& c) {
-    return c.value - best > worth_a_closer_look * scale;
-  });
+  std::erase_if(all,
+                [&](const Candidate& c) { return c.value - best > worth_a_closer_look * scale; });
   fit_all(true, 0.3, 1);
   pose.places = judged(all);
   pose.sem_to_afm = pose.places.front().sem_to_afm;

@@ -11,8 +11,8 @@
 #include "compare_truth.h"
 #include "correct_and_reconstruct.h"
 #include "first_calibration.h"
-#include "judge_places.h"
 #include "job_identity.h"
+#include "judge_places.h"
 #include "reconstruction_checkpoint.h"
 #include "reconstruction_output.h"
 #include "reconstruction_report.h"
@@ -25,6 +25,7 @@
 #include "surf/io/plot.h"
 #include "surf/io/sim/materials.h"
 #include "surf/io/transform_file.h"
+#include "surf/reconstruction/tip_search.h"
 #include "surf/workflow/step_record.h"
 #include "surf/workflow/version.h"
 #include "tip_with_sem.h"
@@ -80,6 +81,7 @@ Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const S
     id["offset"] = format_exact(sem->offset);
     id["SEM noise"] = text_of({sem->noise.slope, sem->noise.intercept, sem->noise.least_variance});
     id["transform"] = map_text(sem->sem_to_afm);
+    if (!sem->shapes.of_rows.empty()) id["line jitter"] = hash_of(sem->shapes.of_rows.data());
     for (const SemDiscrepancy& part : sem->discrepancy)
       id["model error"] +=
           fmt::format("{} {:g} ", hash_of(part.deviation.data()), part.correlation_px);
@@ -156,10 +158,20 @@ std::vector<std::string> reasons_of(const ReconstructSummary& s) {
     reasons.push_back(fmt::format("the AFM tip is not to be trusted: {}", s.afm->tip.doubt));
   if (s.rival)
     reasons.push_back(fmt::format(
-        "another surface explains both images, with a probability of {:.2g}; it differs in {:.0f} % "
+        "another surface explains both images, with a probability of {:.2g}; it differs in {:.0f} "
+        "% "
         "of its heights: see rival.vti, and say by landmarks or `registration.transform` which "
         "place is meant",
         s.rival->probability, 100 * s.rival->share_apart));
+  if (s.afm && s.afm->tip_bound && !r.tip.z_nm.empty()) {
+    constexpr double far_beyond = 10;
+    const double thresholds = beyond({*s.afm->tip_bound, s.afm->tip_threshold_nm}, r.tip);
+    if (thresholds > far_beyond)
+      reasons.push_back(fmt::format(
+          "the fitted tip is duller than what the scan itself allows, by {:.0f} times the noise's "
+          "threshold: give the tip if you know it, or look for a double tip",
+          thresholds));
+  }
   if (s.pose && !s.pose->verified())
     reasons.push_back(fmt::format(
         "the registration is {} ({}): walls may be displaced by {:.2g} pixels, which the "

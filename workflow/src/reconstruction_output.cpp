@@ -176,10 +176,10 @@ std::string history_text(const std::vector<ScaleReport>& scales) {
 
 std::vector<fs::path> reconstruction_files(const fs::path& folder) {
   std::vector<fs::path> files;
-  for (const char* name :
-       {"surface.vti", "surface.gsf", "surface.glb", "simulated_afm.vti", "simulated_sem.vti",
-        "rival.vti", "rival_transform.json", "tip.txt", "first_tip.txt", "model.json", "transform.json", "registration.png",
-        "history.csv", "panel.png", "report.json", "checkpoint"})
+  for (const char* name : {"surface.vti", "surface.gsf", "surface.glb", "simulated_afm.vti",
+                           "simulated_sem.vti", "rival.vti", "rival_transform.json", "tip.txt",
+                           "first_tip.txt", "model.json", "transform.json", "registration.png",
+                           "history.csv", "panel.png", "report.json", "checkpoint"})
     files.push_back(folder / name);
   return files;
 }

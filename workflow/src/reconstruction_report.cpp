@@ -123,7 +123,10 @@ Json sem_json(const ReconstructJob& job, const ReconstructSummary& s, const SemD
     c["condition_number"] = number(s.calibration->condition_number);
     c["warnings"] = s.calibration->warnings;
   }
-  json["calibration_at_the_end"] = {{"gains", s.result.gains}, {"offset", s.result.offset}};
+  json["calibration_at_the_end"] = {
+      {"gains", s.result.gains}, {"offset", s.result.offset}, {"blur_px2", s.result.blur_px2}};
+  if (options_of(job, s).refine_drift)
+    json["scan_drift_px"] = {s.result.scan_drift_px.x, s.result.scan_drift_px.y};
   return json;
 }
 
@@ -237,6 +240,7 @@ ReconstructJob parameters_of(const ReconstructJob& job) {
   out.calibration = job.calibration;
   out.sem_noise = job.sem_noise;
   out.model_error = job.model_error;
+  out.line_jitter_px = job.line_jitter_px;
   out.tilt = job.tilt;
   out.corrections = job.corrections;
   out.correction_electrons = job.correction_electrons;
@@ -316,6 +320,14 @@ std::string reconstruction_report(const ReconstructJob& job, const ReconstructSu
   json["surface"] = {{"pixels", {r.surface.z_nm.width(), r.surface.z_nm.height()}},
                      {"pitch_nm", {r.surface.pitch_x_nm, r.surface.pitch_y_nm}},
                      {"converged", r.converged}};
+  if (!r.sem_row_sizes.empty()) {
+    double squares = 0;
+    for (const double size : r.sem_row_sizes) squares += size * size;
+    json["line_jitter"] = {
+        {"allowed_px", job.line_jitter_px},
+        {"found_px",
+         job.line_jitter_px * std::sqrt(squares / static_cast<double>(r.sem_row_sizes.size()))}};
+  }
   if (!r.sem_discrepancy.empty())
     json["discrepancy"] = {{"allowed_share", job.model_error},
                            {"share_of_contrast", r.sem_discrepancy_share}};

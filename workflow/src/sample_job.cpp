@@ -14,6 +14,7 @@
 #include "job_identity.h"
 #include "job_libraries.h"
 #include "surf/afm/morphology.h"
+#include "surf/afm/noise.h"
 #include "surf/afm/tip_shapes.h"
 #include "surf/core/error.h"
 #include "surf/core/instruction_set.h"
@@ -161,6 +162,19 @@ double depth_of(const SampleJob& job, const SampleScene& scene, const SampleSurf
   return 1.2 * range_of(coarse);
 }
 
+/// A value between samples, or beyond them that of the border.
+double between(const Grid<double>& z, double x, double y) {
+  const auto cell = [](double at, int size) {
+    const double inside = std::clamp(at, 0.0, size - 1.0);
+    const int first = std::min(static_cast<int>(inside), size - 2);
+    return std::pair(first, inside - first);
+  };
+  const auto [i, u] = cell(x, z.width());
+  const auto [j, v] = cell(y, z.height());
+  return (1 - v) * ((1 - u) * z(i, j) + u * z(i + 1, j)) +
+         v * ((1 - u) * z(i, j + 1) + u * z(i + 1, j + 1));
+}
+
 /// The scan of an ideal AFM. The surface extends beyond the scan as far as the tip does.
 HeightField dilated(const SampleJob& job, const SampleScene& scene, const SampleSurface& surface,
                     const AfmFrame& frame, double depth_nm, const Watch& watch) {
@@ -177,9 +191,19 @@ HeightField dilated(const SampleJob& job, const SampleScene& scene, const Sample
   options.watch = watch;
   const HeightField image = dilate(finer, tip, options);
   HeightField scan = empty_field(frame.width, frame.height, scene.afm_pitch_nm, 0, 0);
-  for (int y = 0; y < frame.height; ++y)
+  const double drift_nm = job.scan_drift_px * scene.sem_pixel_nm;
+  for (int y = 0; y < frame.height; ++y) {
+    const double across_scan = 2.0 * y / (frame.height - 1) - 1;
+    // As much along x as along y of the SEM image.
+    const double along = std::sqrt(0.5) * drift_nm * across_scan * across_scan;
+    const Affine& m = frame.sem_to_afm;
+    const double by_x = (m.xx + m.xy) * along / scene.afm_pitch_nm,
+                 by_y = (m.yx + m.yy) * along / scene.afm_pitch_nm;
     for (int x = 0; x < frame.width; ++x)
-      scan.z_nm(x, y) = image.z_nm((x + margin) * fine, (y + margin) * fine);
+      scan.z_nm(x, y) = drift_nm == 0 ? image.z_nm((x + margin) * fine, (y + margin) * fine)
+                                      : between(image.z_nm, (x + by_x + margin) * fine,
+                                                (y + by_y + margin) * fine);
+  }
   return scan;
 }
 
@@ -217,15 +241,43 @@ mc::Scene monte_carlo_scene(const SampleJob& job, const SampleScene& scene,
   specimen.height_field = mc::HeightFieldBody{surface.name, std::move(field), 0, Edge::mirror};
   mc::Beam beam;
   beam.energy_ev = scene.energy_ev;
-  beam.spot_nm = scene.spot_nm;
+  beam.spot_nm = job.spot_nm.value_or(scene.spot_nm);
   return mc::Scene(specimen, beam, scan_of(job, scene), job.physics);
+}
+
+/// The detector that is there in place of SE's, or nothing.
+std::vector<mc::Detector> detector_of(const SampleJob& job) {
+  if (job.detector.empty()) return {};
+  std::vector<mc::Detector> all = mc::parse_detectors(job.detector, "`sample.detector`");
+  if (all.size() != 1)
+    throw UsageError("`sample.detector`", fmt::format("'{}' is more than one", job.detector),
+                     "Name one, as in-lens or side:axis=60deg/90deg");
+  return all;
+}
+
+/// Displaces rows along themselves.
+void jitter_rows(double deviation_px, std::uint64_t seed, Grid<float>& image) {
+  const Grid<double> displaced = simulate_noise({0, 1}, image.height(), 1, seed + 1000);
+  std::vector<float> row(static_cast<std::size_t>(image.width()));
+  for (int y = 0; y < image.height(); ++y) {
+    const double by = deviation_px * displaced(y, 0);
+    for (int x = 0; x < image.width(); ++x) {
+      const double from = std::clamp(x - by, 0.0, image.width() - 1.0);
+      const int left = std::min(static_cast<int>(from), image.width() - 2);
+      const double share = from - left;
+      row[static_cast<std::size_t>(x)] =
+          static_cast<float>((1 - share) * image(left, y) + share * image(left + 1, y));
+    }
+    for (int x = 0; x < image.width(); ++x) image(x, y) = row[static_cast<std::size_t>(x)];
+  }
 }
 
 /// The simulated signal of the detector. The gain drifts along a wave over the image's diagonal.
 Image signal_of(const SampleJob& job, const SampleScene& scene, const Image& yields) {
   Image image = yields;
   image.channels = {{"signal", "1", Grid<float>(yields.width(), yields.height())}};
-  const auto& se = yields.find("SE")->values.data();
+  const std::vector<mc::Detector> other = detector_of(job);
+  const auto& se = yields.find(other.empty() ? "SE" : other.front().name)->values.data();
   const auto& bse = yields.find("BSE")->values.data();
   auto& signal = image.channels.front().values.data();
   for (std::size_t i = 0; i < signal.size(); ++i) {
@@ -235,6 +287,8 @@ Image signal_of(const SampleJob& job, const SampleScene& scene, const Image& yie
     signal[i] = static_cast<float>(
         gain * (scene.se_gain * double{se[i]} + scene.bse_gain * double{bse[i]}) + scene.offset);
   }
+  if (job.line_jitter_px > 0)
+    jitter_rows(job.line_jitter_px, job.seed, image.channels.front().values);
   return image;
 }
 
@@ -261,8 +315,10 @@ nlohmann::ordered_json truth_of(const SampleJob& job, const SampleScene& scene,
             {"material", scene.material},
             {"physics", mc::format_physics(job.physics)},
             {"gain_drift", job.gain_drift},
+            {"line_jitter_px", job.line_jitter_px},
+            {"detector", job.detector.empty() ? "SE" : job.detector},
             {"energy_ev", scene.energy_ev},
-            {"spot_nm", scene.spot_nm},
+            {"spot_nm", job.spot_nm.value_or(scene.spot_nm)},
             {"electrons", job.electrons},
             {"gains", {{"SE", scene.se_gain}, {"BSE", scene.bse_gain}}},
             {"offset", scene.offset}}},
@@ -279,6 +335,7 @@ nlohmann::ordered_json truth_of(const SampleJob& job, const SampleScene& scene,
              {{"alpha", scene.afm_noise.alpha},
               {"innovation_nm2", scene.afm_noise.innovation_nm2},
               {"variance_nm2", scene.afm_noise.variance_nm2()}}},
+            {"drift_px", job.scan_drift_px},
             {"tilt_x_deg", scene.tilt_x_deg},
             {"tilt_y_deg", scene.tilt_y_deg},
             {"offset_nm", scene.afm_offset_nm}}}};
@@ -298,6 +355,8 @@ Identity identity_of(const SampleJob& job, const mc::SimulationOptions& options)
           {"cascades", std::to_string(job.cascades)},
           {"seed", std::to_string(job.seed)},
           {"physics", mc::format_physics(job.physics)},
+          {"spot", format_exact(job.spot_nm.value_or(-1))},
+          {"detector", job.detector},
           {"tile_pixels", std::to_string(options.tile_pixels)},
           {"instruction set", std::string(instruction_set())},
           {"ray tracer", mc::ray_tracer_version()},
@@ -377,6 +436,25 @@ void describe(ParameterVisitor& visit, SampleJob& job) {
                          .help = "Share by which the SEM's gain drifts over the image, as charging "
                                  "makes it",
                          .limits = within(-0.5, 0.5)});
+  visit(job.spot_nm, {.name = "sample.spot",
+                      .help = "Standard deviation of the beam's spot",
+                      .unit = Unit::nm,
+                      .limits = within(0, 1000),
+                      .otherwise = "3nm, as the models of these scenes have it"});
+  visit(job.detector, {.name = "sample.detector",
+                       .help = "Detector of secondaries in place of one that sees all of them: "
+                               "in-lens, side, or one of your own, as simulate reads it",
+                       .otherwise = "all of them",
+                       .form = "NAME"});
+  visit(job.scan_drift_px,
+        {.name = "sample.scan_drift",
+         .help = "Displacement of the scan's first and last rows against its middle, in pixels of "
+                 "the SEM image",
+         .limits = within(-20, 20)});
+  visit(job.line_jitter_px, {.name = "sample.line_jitter",
+                             .help = "Standard deviation of displacements of the SEM image's rows, "
+                                     "in pixels",
+                             .limits = within(0, 5)});
   visit(job.seed, {.name = "sample.seed",
                    .help = "Seed of noise and simulation: the same seed gives the same files"});
   describe_cache(visit, job.cache);
@@ -436,6 +514,7 @@ SampleSummary run(const SampleJob& job, const Reporter& reporter) {
   options.budget = mc::ElectronsPerPixel{job.electrons};
   options.seed = job.seed;
   options.threads = job.threads;
+  for (mc::Detector& detector : detector_of(job)) options.detectors.push_back(std::move(detector));
   JobLibraries kept(job.cache, reporter.counting("cascades"), note);
   LargeLibraries source(kept, job.cascades);
   const mc::Scene monte_carlo = monte_carlo_scene(job, scene, surface);

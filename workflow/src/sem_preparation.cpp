@@ -56,7 +56,7 @@ ReconstructionOptions coarse_options(const ReconstructJob& job, const Reconstruc
 }
 
 SemData prepare_sem(const ReconstructJob& job, ReconstructSummary& s, const PlacedImage& image,
-                 AfmData* afm, const Reporter& told) {
+                    AfmData* afm, const Reporter& told) {
   begin(told, "calibration");
   const SlopeDoubt level_doubt = afm ? afm->level_doubt : SlopeDoubt{};
   const bool levels = afm && !job.tilt && level_doubt.x > 0 && level_doubt.y > 0;
@@ -67,13 +67,15 @@ SemData prepare_sem(const ReconstructJob& job, ReconstructSummary& s, const Plac
   FirstCalibration first =
       calibrate_first(image, eroded, *s.model->model, map, job.calibration, job.sem_noise, threads);
   const auto data = [&] {
-    return SemData{image,
-                   s.model->model,
-                   first.gains,
-                   first.offset,
-                   first.noise,
-                   map,
-                   usual_discrepancy(image, job.model_error)};
+    SemData sem{image,
+                s.model->model,
+                first.gains,
+                first.offset,
+                first.noise,
+                map,
+                usual_discrepancy(image, job.model_error)};
+    if (job.line_jitter_px > 0) sem.shapes.of_rows = line_jitter(image, job.line_jitter_px);
+    return sem;
   };
   const bool calibrates = !(job.calibration && job.sem_noise);
   if (afm && job.tilt) s.tilt = *job.tilt, tilt_scan(s.tilt, image, map, *s.afm, *afm);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "chain_steps.h"
+#include "search_places.h"
 #include "surf/core/units.h"
 #include "surf/reconstruction/tip_search.h"
 
@@ -15,16 +16,6 @@ namespace {
 constexpr double worth_replacing = 0.995;  // of what the first tip leaves
 constexpr int most_rounds = 2;
 constexpr double same_place_px = 0.5;
-
-double apart_px(const Affine& a, const Affine& b, const PlacedImage& sem) {
-  double most = 0;
-  for (const int x : {0, sem.values.width() - 1})
-    for (const int y : {0, sem.values.height() - 1}) {
-      const Point2 p = a({sem.x_nm(x), sem.y_nm(y)}), q = b({sem.x_nm(x), sem.y_nm(y)});
-      most = std::max(most, std::hypot(p.x - q.x, p.y - q.y) / sem.pitch_x_nm);
-    }
-  return most;
-}
 
 /// Registers again: from the place that was found, or anew if that is not verified.
 Pose registered(const PoseOptions& options, const PreparedAfm& afm, const PlacedImage& sem,
@@ -46,6 +37,7 @@ bool find_tip_with_sem(PreparedAfm& afm, Pose& pose, const PoseOptions& options,
                        const Reporter& reporter) {
   begin(reporter, "tip");
   const bool fixed = options.transform || options.landmarks_only;
+  if (!fixed) go_to_likeliest_place(pose, options, afm, sem, model, threads, reporter);
   bool replaced = false;
   for (int round = 0; round < most_rounds; ++round) {
     FoundTip found = find_tip_by_sem(afm.image, afm.tip, sem, *model.model, pose.sem_to_afm,

@@ -57,6 +57,7 @@ RoundTip find_round_tip(const HeightField& scan, const RoundTipOptions& o) {
     out.summary.widest = size;
     out.summary.threshold_nm = chosen.threshold_nm;
     profiles.push_back(round_profile_nm(chosen.tip, bounding_share));
+    out.bound = chosen.tip;
     out.tip = tip_below(profiles, scan.pitch_x_nm, scan.pitch_y_nm, relief, shorter / 2);
     if (size >= enough && std::max(out.tip.z_nm.width(), out.tip.z_nm.height()) <= size + 2) break;
   }

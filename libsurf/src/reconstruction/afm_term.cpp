@@ -101,7 +101,7 @@ Affine AfmTerm::moved(const Affine& surface_to_afm, const MapChange& c) const {
 }
 
 AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to_afm,
-                                 const TipChange& tip_change) const {
+                                 const TipChange& tip_change, const Point2& drift_px) const {
   State s;
   const Tip tip = family_.changed(tip_, tip_change, &s.by_tip);
   const int w = image_.z_nm.width(), h = image_.z_nm.height();
@@ -112,7 +112,12 @@ AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to
     s.pull = Grid<double>(w, h);
     return s;
   }
-  const Affine map = to_samples(surface_to_afm);
+  const Affine straight = to_samples(surface_to_afm);
+  const auto map = [&](const Point2& nm) {
+    const double share = drift_share((nm.y - middle_.y) / reach_nm_);
+    const Point2 p = straight(nm);
+    return Point2{p.x + share * drift_px.x, p.y + share * drift_px.y};
+  };
   const int f = factor_, tw = tip.z_nm.width(), th = tip.z_nm.height();
   const double step_x = image_.pitch_x_nm / f, step_y = image_.pitch_y_nm / f;
 
@@ -243,6 +248,8 @@ void AfmTerm::add_gradient(const State& s, const Grid<double>& z, const Grid<dou
     (*map)[3] += sy;
     (*map)[4] += sy * c.from_middle_x;
     (*map)[5] += sy * c.from_middle_y;
+    (*map)[6] += sx * drift_share(c.from_middle_y);
+    (*map)[7] += sy * drift_share(c.from_middle_y);
   }
 }
 
@@ -260,8 +267,10 @@ Grid<double> AfmTerm::change(const State& s, const Grid<double>& z, const Grid<d
     const CubicSample at(c.x, c.y, frame_.width, frame_.height);
     v += at.value(dz);
     if (moves)
-      v += at.slope_x(z) * (map[0] + map[1] * c.from_middle_x + map[2] * c.from_middle_y) +
-           at.slope_y(z) * (map[3] + map[4] * c.from_middle_x + map[5] * c.from_middle_y);
+      v += at.slope_x(z) * (map[0] + map[1] * c.from_middle_x + map[2] * c.from_middle_y +
+                            map[6] * drift_share(c.from_middle_y)) +
+           at.slope_y(z) * (map[3] + map[4] * c.from_middle_x + map[5] * c.from_middle_y +
+                            map[7] * drift_share(c.from_middle_y));
     out.data()[i] = v;
   }
   return out;

@@ -40,8 +40,9 @@ class AfmTerm {
     double value = 0;
   };
 
-  State evaluate(const Grid<double>& z_nm, const Affine& surface_to_afm,
-                 const TipChange& tip = {}) const;
+  /// `drift_px`: see MapChange.
+  State evaluate(const Grid<double>& z_nm, const Affine& surface_to_afm, const TipChange& tip = {},
+                 const Point2& drift_px = {}) const;
 
   /// The vector-Jacobian product: out += J^T w for weights w of pixels. If `map` and `tip` are
   /// given, the derivatives by them are added.

@@ -105,7 +105,7 @@ DescentReport descend(const Objective& objective, Unknowns& at, double sigma_px,
 
 void fit_few(const Objective& o, Unknowns& at, const Watch& watch) {
   const int of_map = o.afm && o.fit_map ? map_numbers : 0;
-  const int of_mixture = o.sem && o.fit_mixture ? 2 : 0, n = of_map + of_mixture;
+  const int of_mixture = o.fits_mixture() ? mixture_numbers : 0, n = of_map + of_mixture;
   if (n == 0) return;
   Objective::State state = o.evaluate(at);
   double damping = 1e-6;
@@ -129,18 +129,24 @@ void fit_few(const Objective& o, Unknowns& at, const Watch& watch) {
           for (int k = 0; k < map_numbers; ++k)
             a(i, k) += change[i].data()[p] * weighed[k].data()[p];
         }
+      for (int k = affine_numbers; k < map_numbers; ++k) {
+        if (!o.fit_drift) a.row(k).setZero(), a.col(k).setZero(), g(k) = 0;
+        a(k, k) += o.fit_drift ? o.drift_precision : 1;
+        if (o.fit_drift)
+          g(k) += o.drift_precision * (k == affine_numbers ? at.drift_px.x : at.drift_px.y);
+      }
     }
     if (of_mixture) {
-      const auto value = [&](int c, std::size_t p) {
-        return c == 0 ? state.sem->simulated.data()[p] - at.mixture.back() : 1.0;
-      };
-      for (std::size_t p = 0; p < state.sem->pull.size(); ++p)
-        for (int i = 0; i < of_mixture; ++i)
-          g(of_map + i) += state.sem->pull.data()[p] * value(i, p);
+      const auto images = o.sem->mixture_images(*state.sem, at.mixture);
+      for (int i = 0; i < of_mixture; ++i)
+        for (std::size_t p = 0; p < state.sem->pull.size() && o.fits(i); ++p)
+          g(of_map + i) += state.sem->pull.data()[p] * images[i].data()[p];
+      if (o.fit_blur) g(of_map + 2) += o.blur_precision * at.mixture.blur_px2;
       const auto precision = o.sem->mixture_precision(*state.sem, at.mixture);
       for (int i = 0; i < of_mixture; ++i)
         for (int k = 0; k < of_mixture; ++k)
-          a(of_map + i, of_map + k) = precision[static_cast<std::size_t>(i + k)];
+          a(of_map + i, of_map + k) = !(o.fits(i) && o.fits(k)) ? i == k : precision[i][k];
+      if (o.fit_blur) a(of_map + 2, of_map + 2) += o.blur_precision;
     }
     bool better = false;
     double fell = 0;

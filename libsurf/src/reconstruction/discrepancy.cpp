@@ -39,11 +39,15 @@ struct Part {
 struct Discrepancy::Layout {
   int width = 0, height = 0, coefficients = 0, columns = 0, rows = 0;
   std::vector<Part> parts;
+  SemShapes shapes;
+  int first_row = 0, first_shape = 0;  // numbers of their first coefficients
+  bool has_rows() const { return !shapes.of_rows.empty(); }
   Matrix pattern;  // lower triangle
 
   /// Calls with the cell's pixels and its coefficients, for each cell of the finest part.
   template <class Cell>
   void for_each_cell(const Cell& cell) const {
+    if (parts.empty()) return;
     const int step = parts.front().spacing;
     std::vector<int> numbers(parts.size() * per_part);
     for (int row = 0; row < rows; ++row)
@@ -92,6 +96,11 @@ struct Discrepancy::Layout {
                        (b[0] * along(x, r) + b[1] * along(x, r + 1) + b[2] * along(x, r + 2));
       }
     }
+    for (int y = 0; has_rows() && y < height; ++y)
+      for (int x = 0; x < width; ++x) out(x, y) += c(first_row + y) * shapes.of_rows(x, y);
+    for (std::size_t k = 0; k < shapes.of_image.size(); ++k)
+      for (std::size_t i = 0; i < out.size(); ++i)
+        out.data()[i] += c(first_shape + static_cast<int>(k)) * shapes.of_image[k].data()[i];
     return out;
   }
 
@@ -115,13 +124,21 @@ struct Discrepancy::Layout {
           for (int k = 0; k < taps; ++k) to[k] += b[static_cast<std::size_t>(k)] * along(x, r);
         }
     }
+    for (int y = 0; has_rows() && y < height; ++y)
+      for (int x = 0; x < width; ++x) out(first_row + y) += shapes.of_rows(x, y) * v(x, y);
+    for (std::size_t k = 0; k < shapes.of_image.size(); ++k)
+      for (std::size_t i = 0; i < v.size(); ++i)
+        out(first_shape + static_cast<int>(k)) += shapes.of_image[k].data()[i] * v.data()[i];
     return out;
   }
 };
 
-Discrepancy::Discrepancy(const std::vector<SemDiscrepancy>& parts) {
+Discrepancy::Discrepancy(const std::vector<SemDiscrepancy>& parts, const SemShapes& shapes) {
   auto layout = std::make_shared<Layout>();
-  const Grid<double>& first = parts.front().deviation;
+  layout->shapes = shapes;
+  const Grid<double>& first = !parts.empty()            ? parts.front().deviation
+                              : !shapes.of_rows.empty() ? shapes.of_rows
+                                                        : shapes.of_image.front();
   layout->width = first.width(), layout->height = first.height();
   int finest = 0;
   for (const SemDiscrepancy& given : parts) {
@@ -138,14 +155,28 @@ Discrepancy::Discrepancy(const std::vector<SemDiscrepancy>& parts) {
     layout->coefficients += part.columns * part.rows;
     layout->parts.push_back(std::move(part));
   }
-  layout->columns = (layout->width + finest - 1) / finest;
-  layout->rows = (layout->height + finest - 1) / finest;
+  if (finest > 0) {
+    layout->columns = (layout->width + finest - 1) / finest;
+    layout->rows = (layout->height + finest - 1) / finest;
+  }
+  const int splines_alone = layout->coefficients;
+  layout->first_row = splines_alone;
+  layout->first_shape = layout->first_row + (layout->has_rows() ? layout->height : 0);
+  layout->coefficients = layout->first_shape + static_cast<int>(shapes.of_image.size());
   std::vector<Eigen::Triplet<double>> entries;
   layout->for_each_cell([&](int, int, int, int, const std::vector<int>& numbers) {
     for (const int a : numbers)
       for (const int b : numbers)
         if (a >= b) entries.emplace_back(a, b, 0.0);
   });
+  if (layout->has_rows())
+    layout->for_each_cell([&](int, int y0, int, int y1, const std::vector<int>& numbers) {
+      for (int y = y0; y < y1; ++y)
+        for (const int b : numbers) entries.emplace_back(layout->first_row + y, b, 0.0);
+    });
+  for (int k = splines_alone; k < layout->first_shape; ++k) entries.emplace_back(k, k, 0.0);
+  for (int k = layout->first_shape; k < layout->coefficients; ++k)
+    for (int b = 0; b <= k; ++b) entries.emplace_back(k, b, 0.0);
   layout->pattern.resize(layout->coefficients, layout->coefficients);
   layout->pattern.setFromTriplets(entries.begin(), entries.end());
   layout->pattern.makeCompressed();
@@ -156,6 +187,31 @@ Discrepancy::~Discrepancy() = default;
 
 struct Discrepancy::Factor::Solver {
   Eigen::SimplicialLLT<Matrix, Eigen::Lower> factor;
+
+  /// What rows have in common with themselves and with the splines that reach into them.
+  static void add_rows(const Layout& layout, const Grid<double>& weight, Matrix& matrix) {
+    const std::size_t count = layout.parts.size() * per_part;
+    std::vector<double> b(count);
+    for (int y = 0; y < layout.height; ++y) {
+      double own = 0;
+      for (int x = 0; x < layout.width; ++x)
+        own += weight(x, y) * std::pow(layout.shapes.of_rows(x, y), 2);
+      matrix.coeffRef(layout.first_row + y, layout.first_row + y) = own;
+    }
+    layout.for_each_cell([&](int x0, int y0, int x1, int y1, const std::vector<int>& numbers) {
+      for (int y = y0; y < y1; ++y) {
+        std::vector<double> sums(count);
+        for (int x = x0; x < x1; ++x) {
+          const double w = weight(x, y) * layout.shapes.of_rows(x, y);
+          if (w == 0) continue;
+          layout.at(x, y, b.data());
+          for (std::size_t i = 0; i < count; ++i) sums[i] += w * b[i];
+        }
+        for (std::size_t i = 0; i < count; ++i)
+          matrix.coeffRef(layout.first_row + y, numbers[i]) += sums[i];
+      }
+    });
+  }
 };
 
 Discrepancy::Factor::Factor(std::shared_ptr<const Layout> layout, const Grid<double>& weight)
@@ -180,6 +236,14 @@ Discrepancy::Factor::Factor(std::shared_ptr<const Layout> layout, const Grid<dou
         if (numbers[i] >= numbers[k])
           matrix.coeffRef(numbers[i], numbers[k]) += sums[i * count + k];
   });
+  if (layout_->has_rows()) Solver::add_rows(*layout_, weight_, matrix);
+  for (int k = layout_->first_shape; k < layout_->coefficients; ++k) {
+    Grid<double> weighted =
+        layout_->shapes.of_image[static_cast<std::size_t>(k - layout_->first_shape)];
+    for (std::size_t i = 0; i < weighted.size(); ++i) weighted.data()[i] *= weight_.data()[i];
+    const Vector with = layout_->transpose(weighted);
+    for (int b = 0; b <= k; ++b) matrix.coeffRef(k, b) = with(b);
+  }
   for (int k = 0; k < layout_->coefficients; ++k) matrix.coeffRef(k, k) += 1;
   solver_->factor.compute(matrix);
   if (solver_->factor.info() != Eigen::Success)
@@ -214,6 +278,12 @@ Grid<double> Discrepancy::Factor::precision(const Grid<double>& v) const {
   const Grid<double> field = layout_->field(solver_->factor.solve(layout_->transpose(out)));
   for (std::size_t i = 0; i < out.size(); ++i) out.data()[i] -= weight_.data()[i] * field.data()[i];
   return out;
+}
+
+int Discrepancy::Factor::rows() const { return layout_->has_rows() ? layout_->height : 0; }
+
+int Discrepancy::Factor::shapes() const {
+  return static_cast<int>(layout_->shapes.of_image.size());
 }
 
 Grid<double> Discrepancy::Factor::draw(std::uint64_t seed, std::uint64_t stream) const {

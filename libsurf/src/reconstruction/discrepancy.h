@@ -16,10 +16,10 @@ namespace surf::reconstruction {
 /// residual, and the likelihood that is left has the noise's covariance and the discrepancy's.
 class Discrepancy {
  public:
-  /// Parts on the surface's samples, without correlation between them. Spacings of the grids are
-  /// the parts' correlation lengths, rounded so that each is a multiple of the first. Parts rise in
-  /// length.
-  explicit Discrepancy(const std::vector<SemDiscrepancy>& parts);
+  /// Parts and shapes on the surface's samples, without correlation between them. Spacings of the
+  /// grids are the parts' correlation lengths, rounded so that each is a multiple of the first.
+  /// Parts rise in length.
+  explicit Discrepancy(const std::vector<SemDiscrepancy>& parts, const SemShapes& shapes = {});
   ~Discrepancy();
 
   /// For pixels of precisions `weight` (1 / variance of the noise; 0: does not count).
@@ -37,9 +37,9 @@ class Discrepancy::Factor {
   ~Factor();
 
   struct Fit {
-    Grid<double> field;  ///< the most likely discrepancy, in the image's unit
-    double penalty = 0;  ///< minus the logarithm of its prior, without constants
-    std::vector<double> coefficients;
+    Grid<double> field;                ///< the most likely discrepancy, in the image's unit
+    double penalty = 0;                ///< minus the logarithm of its prior, without constants
+    std::vector<double> coefficients;  ///< of splines, rows and shapes, in this order
   };
   Fit fit(const Grid<double>& residual) const;
   /// By how much what is left of a residual and its penalty rise with each pixel of the residual
@@ -48,6 +48,9 @@ class Discrepancy::Factor {
   Grid<double> spread(const Grid<double>& v, const Fit& fit) const;
   /// Q v, where Q is the inverse of the covariance of noise and discrepancy.
   Grid<double> precision(const Grid<double>& v) const;
+  /// Numbers of coefficients of rows and of shapes, the last ones of all.
+  int rows() const;
+  int shapes() const;
   /// A draw of the discrepancy by its prior.
   Grid<double> draw(std::uint64_t seed, std::uint64_t stream) const;
 

@@ -106,6 +106,7 @@ DescentReport gauss_newton(const Objective& o, Unknowns& at, const DescentOption
     options.watch.report(report.iterations, report.iterations + usual_iterations);
     // Near the end little changes: factorisation and SEM approximation are kept until the steps
     // with them cost more than renewing them.
+    const bool fresh = stale;
     if (stale) {
       m.factor(o, at, state);
       report.factors += m.tiles();
@@ -138,8 +139,11 @@ DescentReport gauss_newton(const Objective& o, Unknowns& at, const DescentOption
       if (in.promised < options.tolerance) break;
     }
     if (!accepted || fell < options.tolerance) {
-      report.ended = "converged";
-      break;
+      if (fresh) {
+        report.ended = "converged";
+        break;
+      }
+      stale = true;  // what the step was made of may be what held it back
     }
   }
   return report;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "spot_blur.h"
+
 namespace surf::reconstruction {
 namespace {
 
@@ -30,7 +32,7 @@ void add(Step& to, double factor, const Step& step) {
 Objective::State Objective::evaluate(const Unknowns& at) const {
   State s;
   if (afm) {
-    s.afm = afm->evaluate(at.z_nm, at.surface_to_afm, at.tip);
+    s.afm = afm->evaluate(at.z_nm, at.surface_to_afm, at.tip, at.drift_px);
     s.afm_value = s.afm->value;
   }
   if (sem) {
@@ -43,6 +45,10 @@ Objective::State Objective::evaluate(const Unknowns& at) const {
       const double d = at.z_nm.data()[i] - start.data()[i];
       s.prior_value += 0.5 * anchor_per_nm2 * d * d;
     }
+  if (fit_drift)
+    s.prior_value +=
+        0.5 * drift_precision * (at.drift_px.x * at.drift_px.x + at.drift_px.y * at.drift_px.y);
+  if (fit_blur) s.prior_value += 0.5 * blur_precision * at.mixture.blur_px2 * at.mixture.blur_px2;
   if (fit_tip)
     for (const double t : at.tip) s.prior_value += 0.5 * tip_precision * t * t;
   return s;
@@ -57,7 +63,14 @@ Step Objective::gradient(const Unknowns& at, const State& s) const {
                       fit_tip ? &g.tip : nullptr);
   if (sem)
     sem->add_gradient(*s.sem, at.mixture, s.sem->pull, nullptr, g.z_nm,
-                      fit_mixture ? &g.mixture : nullptr);
+                      fits_mixture() ? &g.mixture : nullptr);
+  if (fit_drift) {
+    g.map[6] += drift_precision * at.drift_px.x;
+    g.map[7] += drift_precision * at.drift_px.y;
+  }
+  hold(g.map);
+  if (fit_blur) g.mixture[2] += blur_precision * at.mixture.blur_px2;
+  hold(g.mixture);
   prior.evaluate(at.z_nm, &g.z_nm, nullptr);
   if (anchor_per_nm2 > 0)
     for (std::size_t i = 0; i < start.size(); ++i)
@@ -78,8 +91,13 @@ Step Objective::product(const Unknowns& at, const State& s, const Step& v,
     const Grid<double> change =
         sem->precision(*s.sem, sem->change(*s.sem, at.mixture, v.z_nm, v.mixture, near));
     sem->add_gradient(*s.sem, at.mixture, change, near, out.z_nm,
-                      fit_mixture ? &out.mixture : nullptr);
+                      fits_mixture() ? &out.mixture : nullptr);
   }
+  for (int k = affine_numbers; k < map_numbers && fit_drift; ++k)
+    out.map[k] += drift_precision * v.map[k];
+  hold(out.map);
+  if (fit_blur) out.mixture[2] += blur_precision * v.mixture[2];
+  hold(out.mixture);
   prior.add_product(s.prior_weights, v.z_nm, out.z_nm);
   if (anchor_per_nm2 > 0)
     for (std::size_t i = 0; i < start.size(); ++i)
@@ -89,15 +107,28 @@ Step Objective::product(const Unknowns& at, const State& s, const Step& v,
   return out;
 }
 
+void Objective::hold(MixtureChange& change) const {
+  for (int k = 0; k < mixture_numbers; ++k)
+    if (!fits(k)) change[static_cast<std::size_t>(k)] = 0;
+}
+
+void Objective::hold(MapChange& change) const {
+  for (int k = affine_numbers; k < map_numbers; ++k)
+    if (!fit_drift) change[static_cast<std::size_t>(k)] = 0;
+}
+
 Unknowns Objective::moved(const Unknowns& at, const Step& step) const {
   Unknowns next = at;
   for (std::size_t i = 0; i < next.z_nm.size(); ++i) next.z_nm.data()[i] += step.z_nm.data()[i];
   if (afm && fit_map) next.surface_to_afm = afm->moved(at.surface_to_afm, step.map);
+  if (fit_drift) next.drift_px = {at.drift_px.x + step.map[6], at.drift_px.y + step.map[7]};
   if (fit_mixture) {
-    for (std::size_t c = 0; c + 1 < next.mixture.size(); ++c)
-      next.mixture[c] *= 1 + step.mixture[0];
-    next.mixture.back() += step.mixture[1];
+    for (double& gain : next.mixture.gains) gain *= 1 + step.mixture[0];
+    next.mixture.offset += step.mixture[1];
   }
+  if (fit_blur)
+    next.mixture.blur_px2 =
+        std::clamp(at.mixture.blur_px2 + step.mixture[2], least_blur_px2, largest_blur_px2);
   if (fit_tip)  // limited, because a long step must not give NaN
     for (int k = 0; k < tip_numbers; ++k)
       next.tip[k] = std::clamp(at.tip[k] + step.tip[k], -largest_tip_change, largest_tip_change);

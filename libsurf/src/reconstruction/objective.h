@@ -15,8 +15,9 @@ namespace surf::reconstruction {
 struct Unknowns {
   Grid<double> z_nm;  ///< on the surface's samples
   Affine surface_to_afm;
-  std::vector<double> mixture;  ///< one gain per channel, then the offset; empty without SEM
-  TipChange tip{};              ///< change from the given tip
+  Mixture mixture;    ///< without gains if there is no SEM image
+  TipChange tip{};    ///< change from the given tip
+  Point2 drift_px{};  ///< of the scan, see MapChange
 };
 
 /// A change of the unknowns, or a derivative by them.
@@ -33,15 +34,22 @@ void add(Step& to, double factor, const Step& step);
 /// derivatives.
 class Objective {
  public:
-  std::optional<AfmTerm> afm;
-  std::optional<SemTerm> sem;
+  std::optional<AfmTerm> afm = {};
+  std::optional<SemTerm> sem = {};
   CurvaturePrior prior;
   SurfaceFrame frame;
-  bool fit_map = false, fit_mixture = false;
+  bool fit_map = false;
+  /// Whether the scan's drift is fitted, too, with the map. Its prior: 0, within some pixels.
+  bool fit_drift = false;
+  double drift_precision = 1.0 / 9;
+  bool fit_mixture = false;  ///< gains and offset
+  /// Whether the blur is fitted. Its prior: 0, with a deviation that a spot of half a pixel has.
+  bool fit_blur = false;
+  double blur_precision = 16;
   /// Precision of a height about `start`, 1 / nm^2. It keeps the surface in place if there is no
   /// AFM image.
   double anchor_per_nm2 = 0;
-  Grid<double> start;
+  Grid<double> start = {};
   /// Whether the tip is fitted. Its prior: the slope of the given tip is right within a third.
   bool fit_tip = false;
   double tip_precision = 9;
@@ -62,6 +70,12 @@ class Objective {
   Step product(const Unknowns& at, const State& state, const Step& v,
                const SemTerm::Near* near = nullptr) const;
   Unknowns moved(const Unknowns& at, const Step& step) const;
+  /// Whether a number of a change of the mixture is fitted.
+  bool fits(int mixture_number) const { return mixture_number == 2 ? fit_blur : fit_mixture; }
+  bool fits_mixture() const { return sem && (fit_mixture || fit_blur); }
+  /// Zero where a number is not fitted.
+  void hold(MixtureChange& change) const;
+  void hold(MapChange& change) const;
   Step zero() const;
 };
 

@@ -27,10 +27,12 @@ Step data_pull(const Objective& o, const Unknowns& at, const Objective::State& s
         simulate_noise(o.afm->noise(), s.afm->residual.width(), s.afm->residual.height(), seed);
     o.afm->add_gradient(*s.afm, at.z_nm, o.afm->precision(e), r.z_nm, o.fit_map ? &r.map : nullptr,
                         o.fit_tip ? &r.tip : nullptr);
+    o.hold(r.map);
   }
   if (o.sem) {
     o.sem->add_gradient(*s.sem, at.mixture, o.sem->draw_precision(*s.sem, seed), near, r.z_nm,
-                        o.fit_mixture ? &r.mixture : nullptr);
+                        o.fits_mixture() ? &r.mixture : nullptr);
+    o.hold(r.mixture);
   }
   return r;
 }
@@ -45,6 +47,9 @@ void add_prior_pull(const Objective& o, const Objective::State& s, std::uint64_t
   });
   if (o.anchor_per_nm2 > 0)
     for (double& v : r.z_nm.data()) v += std::sqrt(o.anchor_per_nm2) * normal();
+  for (int k = affine_numbers; k < map_numbers && o.fit_drift; ++k)
+    r.map[k] += std::sqrt(o.drift_precision) * normal();
+  if (o.fit_blur) r.mixture[2] += std::sqrt(o.blur_precision) * normal();
   if (o.fit_tip)
     for (double& v : r.tip) v += std::sqrt(o.tip_precision) * normal();
 }

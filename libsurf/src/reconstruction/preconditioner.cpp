@@ -214,15 +214,23 @@ void Preconditioner::factor(const Objective& o, const Unknowns& at, const Object
                           &column);
       for (int i = 0; i < map_numbers; ++i) block(i, k) = column[i];
     }
+    for (int k = affine_numbers; k < map_numbers; ++k) {
+      if (!o.fit_drift) block.row(k).setZero(), block.col(k).setZero();
+      block(k, k) += o.fit_drift ? o.drift_precision : 1;
+    }
     block = 0.5 * (block + block.transpose()).eval();
     block.diagonal().array() *= 1 + 1e-9;
     block.diagonal().array() += 1e-12;
     few.map.compute(block);
   }
-  few.has_mixture = o.sem && o.fit_mixture;
+  few.has_mixture = o.fits_mixture();
   if (few.has_mixture) {
     const auto precision = o.sem->mixture_precision(*s.sem, at.mixture);
-    Eigen::MatrixXd block{{precision[0], precision[1]}, {precision[1], precision[2]}};
+    Eigen::MatrixXd block = Eigen::MatrixXd::Identity(mixture_numbers, mixture_numbers);
+    for (int i = 0; i < mixture_numbers; ++i)
+      for (int k = 0; k < mixture_numbers; ++k)
+        if (o.fits(i) && o.fits(k)) block(i, k) = 0.5 * (precision[i][k] + precision[k][i]);
+    if (o.fit_blur) block(2, 2) += o.blur_precision;
     block.diagonal().array() *= 1 + 1e-9;
     few.mixture.compute(block);
   }
@@ -278,8 +286,8 @@ void Preconditioner::Blocks::solve(const Step& r, Step& out, int threads) const 
     Eigen::Map<Eigen::VectorXd>(out.map.data(), map_numbers) =
         map.solve(Eigen::Map<const Eigen::VectorXd>(r.map.data(), map_numbers));
   if (has_mixture)
-    Eigen::Map<Eigen::Vector2d>(out.mixture.data()) =
-        mixture.solve(Eigen::Map<const Eigen::Vector2d>(r.mixture.data()));
+    Eigen::Map<Eigen::Vector3d>(out.mixture.data()) =
+        mixture.solve(Eigen::Map<const Eigen::Vector3d>(r.mixture.data()));
   if (!has_tip) return;
   Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(r.tip.data(), tip_numbers);
   constexpr std::size_t chunks = 16;  // whatever the threads, so that sums are the same

@@ -6,11 +6,14 @@
 
 #include <fmt/format.h>
 
+#include "common_doubts.h"
+#include "depth_doubt.h"
 #include "descent.h"
 #include "gauss_newton.h"
 #include "gaussian_basis.h"
 #include "initial_surface.h"
 #include "posterior.h"
+#include "residual_report.h"
 #include "surf/core/error.h"
 
 namespace surf {
@@ -47,6 +50,15 @@ void check_discrepancy(const SemData& sem) {
                          "Give lengths from 1 to 1000 that do not fall");
     before_px = part.correlation_px;
   }
+  const auto check_shape = [&](const Grid<double>& shape) {
+    if (shape.width() != sem.image.values.width() || shape.height() != sem.image.values.height() ||
+        !std::ranges::all_of(shape.data(), [](double v) { return std::isfinite(v); }))
+      throw InvalidInput("SEM shapes",
+                         "a shape is not finite, or has another size than the SEM image",
+                         "Give a value for each pixel");
+  };
+  if (!sem.shapes.of_rows.empty()) check_shape(sem.shapes.of_rows);
+  for (const Grid<double>& shape : sem.shapes.of_image) check_shape(shape);
 }
 
 void check(const AfmData* afm, const SemData* sem, const ReconstructionOptions& o) {
@@ -88,62 +100,14 @@ void check(const AfmData* afm, const SemData* sem, const ReconstructionOptions& 
     throw UsageError("reconstruct", "an option is out of range", "See the help for ranges");
 }
 
-ResidualReport judge(const Grid<double>& white, const Mask& used) {
-  ResidualReport r;
-  double sum = 0, squares = 0, along = 0, across = 0;
-  std::int64_t pairs_along = 0, pairs_across = 0;
-  const auto counts = [&](int x, int y) { return used.includes(x, y); };
-  for (int y = 0; y < white.height(); ++y)
-    for (int x = 0; x < white.width(); ++x) {
-      if (!counts(x, y)) continue;
-      ++r.pixels;
-      sum += white(x, y);
-      squares += white(x, y) * white(x, y);
-      if (x > 0 && counts(x - 1, y)) {
-        along += white(x, y) * white(x - 1, y);
-        ++pairs_along;
-      }
-      if (y > 0 && counts(x, y - 1)) {
-        across += white(x, y) * white(x, y - 1);
-        ++pairs_across;
-      }
-    }
-  if (r.pixels < 2) return r;
-  const double n = static_cast<double>(r.pixels), variance = squares / n;
-  r.mean = sum / n;
-  r.deviation = std::sqrt(std::max(squares / n - r.mean * r.mean, 0.0));
-  if (variance > 0 && pairs_along > 0)
-    r.along = along / static_cast<double>(pairs_along) / variance;
-  if (variance > 0 && pairs_across > 0)
-    r.across = across / static_cast<double>(pairs_across) / variance;
-  // Limits: what chance allows, plus deviations too small to matter.
-  const double chance = 5 / std::sqrt(n);
-  r.like_noise = std::fabs(r.mean) < 0.1 + chance && r.deviation > 0.8 - chance &&
-                 r.deviation < 1.15 + chance && std::fabs(r.along) < 0.1 + chance &&
-                 std::fabs(r.across) < 0.1 + chance;
-  return r;
-}
-
-/// The root mean square of a discrepancy over the standard deviation of an image.
-double share_of(const Grid<double>& discrepancy, const Grid<double>& image, const Mask& used) {
-  double n = 0, sum = 0, squares = 0, off = 0;
-  for (std::size_t i = 0; i < image.size(); ++i) {
-    if (!used.includes(i)) continue;
-    n += 1;
-    sum += image.data()[i];
-    squares += image.data()[i] * image.data()[i];
-    off += discrepancy.data()[i] * discrepancy.data()[i];
-  }
-  const double variance = n > 0 ? squares / n - sum / n * (sum / n) : 0;
-  return variance > 0 ? std::sqrt(off / n / variance) : 0;
-}
-
 /// The state of a running reconstruction.
 class Work {
  public:
   Work(const AfmData* afm, const SemData* sem, const ReconstructionOptions& options)
-      : afm_(afm), sem_(sem), options_(options), margin_(sem && afm ? margin_of(*sem) : 0),
-        objective_{{}, {}, CurvaturePrior(1, 1), frame_of(afm, sem, margin_), false, false, 0, {}} {
+      : afm_(afm), sem_(sem), options_(options),
+        margin_(sem && afm ? margin_of(*sem) : 0), objective_{
+                                                       .prior = CurvaturePrior(1, 1),
+                                                       .frame = frame_of(afm, sem, margin_)} {
     const SurfaceFrame& frame = objective_.frame;
     at_.surface_to_afm = sem ? sem->sem_to_afm : Affine{};
     at_.z_nm = Grid<double>(frame.width, frame.height);
@@ -164,10 +128,10 @@ class Work {
     start_ = at_.z_nm;
     if (sem) {
       objective_.sem.emplace(*sem, frame, margin_, margin_, options.threads);
-      at_.mixture = sem->gains;
-      at_.mixture.push_back(sem->offset);
+      at_.mixture = {sem->gains, sem->offset, sem->blur_px2};
     }
     objective_.fit_map = afm && sem && options.refine_transform;
+    objective_.fit_drift = objective_.fit_map && options.refine_drift;
     objective_.fit_mixture = sem && options.refine_calibration;
     objective_.fit_tip = afm && sem && options.refine_tip &&
                          options.method == ReconstructionMethod::gauss_newton &&
@@ -201,12 +165,12 @@ class Work {
   void take(const ReconstructionState& s) {
     at_.z_nm = s.surface.z_nm;
     at_.surface_to_afm = s.sem_to_afm;
+    at_.drift_px = s.scan_drift_px;
     std::copy_n(s.tip_change.begin(), std::min(s.tip_change.size(), at_.tip.size()),
                 at_.tip.begin());
     erode_again();
     if (sem_) {
-      at_.mixture = s.gains;
-      at_.mixture.push_back(s.offset);
+      at_.mixture = {s.gains, s.offset, s.blur_px2};
     }
     reports_ = s.scales;
     if (!reports_.empty()) set_prior(reports_.back().curvature_prior_per_nm);
@@ -214,10 +178,15 @@ class Work {
   }
 
   ReconstructionState state() const {
-    ReconstructionState s{objective_.frame.field(at_.z_nm), at_.surface_to_afm, {}, 0, reports_};
+    ReconstructionState s;
+    s.surface = objective_.frame.field(at_.z_nm);
+    s.sem_to_afm = at_.surface_to_afm;
+    s.scan_drift_px = at_.drift_px;
+    s.scales = reports_;
     if (sem_) {
-      s.gains.assign(at_.mixture.begin(), at_.mixture.end() - 1);
-      s.offset = at_.mixture.back();
+      s.gains = at_.mixture.gains;
+      s.offset = at_.mixture.offset;
+      s.blur_px2 = at_.mixture.blur_px2;
     }
     if (objective_.fit_tip) s.tip_change.assign(at_.tip.begin(), at_.tip.end());
     return s;
@@ -236,6 +205,8 @@ class Work {
   void scale(double sigma_px, bool first, bool last, const Watch& watch) {
     watch.report(0, 1);
     DescentOptions o;
+    // A surface that is still too smooth would make the spot seem too sharp.
+    objective_.fit_blur = sem_ && options_.refine_spot && last;
     const bool newton = options_.method == ReconstructionMethod::gauss_newton;
     o.iterations = options_.iterations > 0 ? options_.iterations : newton ? 60 : 200;
     o.tolerance = (options_.tolerance > 0 ? options_.tolerance
@@ -366,32 +337,16 @@ class Work {
             cut(z)};
   }
 
-  /// Adds to the deviations what no draw contains: a tilt of the whole, and a displacement of
-  /// walls.
-  void add_common_doubts(Reconstruction& out) const {
-    const Grid<double> soft = cut(GaussianBasis(soft_px, options_.threads).sum(at_.z_nm));
-    const int w = soft.width(), h = soft.height();
-    double middle_x = 0, middle_y = 0;
+  CommonDoubts common_doubts() const {
+    CommonDoubts doubts;
+    doubts.seed = options_.seed;
     if (afm_) {
-      middle_x = afm_->image.x_nm(afm_->image.z_nm.width() / 2);
-      middle_y = afm_->image.y_nm(afm_->image.z_nm.height() / 2);
+      const HeightField& scan = afm_->image;
+      doubts.level = afm_->level_doubt;
+      doubts.middle = {scan.x_nm(scan.z_nm.width() / 2), scan.y_nm(scan.z_nm.height() / 2)};
     }
-    for (int y = 0; y < h; ++y)
-      for (int x = 0; x < w; ++x) {
-        double square = out.deviation_nm(x, y) * out.deviation_nm(x, y);
-        if (afm_) {
-          const Point2 p = at_.surface_to_afm({out.surface.x_nm(x), out.surface.y_nm(y)});
-          square += std::pow(afm_->level_doubt.x * (p.x - middle_x), 2) +
-                    std::pow(afm_->level_doubt.y * (p.y - middle_y), 2);
-        }
-        if (sem_ && x > 0 && y > 0 && x + 1 < w && y + 1 < h)
-          square +=
-              0.25 *
-              (edge_doubt_px * edge_doubt_px + options_.place_doubt_px * options_.place_doubt_px) *
-              (std::pow(soft(x + 1, y) - soft(x - 1, y), 2) +
-               std::pow(soft(x, y + 1) - soft(x, y - 1), 2));
-        out.deviation_nm(x, y) = std::sqrt(square);
-      }
+    if (sem_) doubts.edge_px = edge_doubt_px, doubts.place_px = options_.place_doubt_px;
+    return doubts;
   }
 
   Reconstruction result() {
@@ -405,6 +360,8 @@ class Work {
     const ReconstructionState last = state();
     out.gains = last.gains;
     out.offset = last.offset;
+    out.blur_px2 = last.blur_px2;
+    out.scan_drift_px = at_.drift_px;
     const Objective::State s = objective_.evaluate(at_);
     if (s.afm) {
       out.tip = objective_.afm->tip(at_.tip);
@@ -419,6 +376,10 @@ class Work {
       out.sem_residual = cut(sem_white(s));
       if (!s.sem->discrepancy.empty()) {
         out.sem_discrepancy = cut(s.sem->discrepancy);
+        if (!s.sem->row_sizes.empty())
+          out.sem_row_sizes.assign(s.sem->row_sizes.begin() + margin_,
+                                   s.sem->row_sizes.end() - margin_);
+        out.sem_shape_sizes = s.sem->shape_sizes;
         out.sem_discrepancy_share =
             share_of(s.sem->discrepancy, s.sem->simulated, objective_.sem->used());
       }
@@ -428,7 +389,11 @@ class Work {
           posterior(objective_, at_, options_.probes, options_.seed, options_.threads, precision(),
                     options_.watch.part(share_of_scales, 1));
       out.deviation_nm = cut(p.deviation_nm);
-      add_common_doubts(out);
+      const Grid<double> deeper = cut(depth_doubt(objective_, at_, s, options_.threads));
+      for (std::size_t i = 0; i < deeper.size(); ++i)
+        out.deviation_nm.data()[i] = std::hypot(out.deviation_nm.data()[i], deeper.data()[i]);
+      add(common_doubts(), out.surface, cut(GaussianBasis(soft_px, options_.threads).sum(at_.z_nm)),
+          at_.surface_to_afm, out.deviation_nm);
       out.data_support = cut(p.data_support);
     }
     return out;

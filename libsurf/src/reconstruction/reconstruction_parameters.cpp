@@ -82,9 +82,13 @@ void describe(ParameterVisitor& visit, ReconstructionOptions& o) {
   show_unless(visit, o.refine_transform,
               {.name = "reconstruction.fixed_transform",
                .help = "Do not fit the map further with the surface"});
+  visit(o.refine_drift, {.name = "reconstruction.fit_drift",
+                         .help = "Fit a drift of the scan that bends its slow axis, with the map"});
   show_unless(visit, o.refine_calibration,
               {.name = "reconstruction.fixed_calibration",
                .help = "Do not fit gains and offset further with the surface"});
+  visit(o.refine_spot, {.name = "reconstruction.fit_spot",
+                        .help = "Fit how much wider the spot is than the model's, as by defocus"});
   visit(o.refine_tip, {.name = "reconstruction.refine_tip",
                        .help = "Fit the tip with the surface, even one that is given"});
   show_unless(visit, o.uncertainty,

@@ -6,6 +6,7 @@
 
 #include "afm/normal_numbers.h"
 #include "gaussian_basis.h"
+#include "spot_blur.h"
 
 namespace surf::reconstruction {
 namespace {
@@ -26,15 +27,21 @@ SemTerm::SemTerm(const SemData& data, const SurfaceFrame& frame, int left, int b
       used_(x + left, y + below) = 1;
       ++used_pixels_;
     }
-  if (data.discrepancy.empty()) return;
+  if (data.discrepancy.empty() && data.shapes.of_rows.empty() && data.shapes.of_image.empty())
+    return;
+  const auto placed = [&](const Grid<double>& given) {
+    if (given.empty()) return given;
+    Grid<double> out(frame.width, frame.height);
+    for (int y = 0; y < given.height(); ++y)
+      for (int x = 0; x < given.width(); ++x) out(x + left, y + below) = given(x, y);
+    return out;
+  };
   std::vector<SemDiscrepancy> parts;
-  for (const SemDiscrepancy& given : data.discrepancy) {
-    parts.push_back({Grid<double>(frame.width, frame.height), given.correlation_px});
-    for (int y = 0; y < given.deviation.height(); ++y)
-      for (int x = 0; x < given.deviation.width(); ++x)
-        parts.back().deviation(x + left, y + below) = given.deviation(x, y);
-  }
-  discrepancy_.emplace(parts);
+  for (const SemDiscrepancy& given : data.discrepancy)
+    parts.push_back({placed(given.deviation), given.correlation_px});
+  SemShapes shapes{placed(data.shapes.of_rows), {}};
+  for (const Grid<double>& given : data.shapes.of_image) shapes.of_image.push_back(placed(given));
+  discrepancy_.emplace(parts, shapes);
   // By the image itself, so that one factor does for all surfaces.
   const Grid<double> soft = GaussianBasis(soft_px, threads).sum(image_);
   Grid<double> weight(frame.width, frame.height);
@@ -43,17 +50,20 @@ SemTerm::SemTerm(const SemData& data, const SurfaceFrame& frame, int left, int b
   factor_ = discrepancy_->factor(weight);
 }
 
-Grid<double> SemTerm::mixed(const ModelImages& images, const std::vector<double>& mixture) const {
-  Grid<double> out(frame_.width, frame_.height, mixture[channels_]);
+Grid<double> SemTerm::mixed(const ModelImages& images, const Mixture& mixture) const {
+  Grid<double> out(frame_.width, frame_.height);
   for (std::size_t c = 0; c < channels_; ++c)
-    for (std::size_t i = 0; i < out.size(); ++i) out.data()[i] += mixture[c] * images[c].data()[i];
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out.data()[i] += mixture.gains[c] * images[c].data()[i];
   return out;
 }
 
-SemTerm::State SemTerm::evaluate(const Grid<double>& z, const std::vector<double>& mixture) const {
+SemTerm::State SemTerm::evaluate(const Grid<double>& z, const Mixture& mixture) const {
   State s;
   s.linear = model_->linearize(frame_.field(z), options_);
-  s.simulated = mixed(s.linear->images(), mixture);
+  s.sharp = mixed(s.linear->images(), mixture);
+  s.simulated = blurred(s.sharp, mixture.blur_px2);
+  for (double& v : s.simulated.data()) v += mixture.offset;
   if (!discrepancy_) {
     s.value = -log_likelihood(image_, s.simulated, noise_, used_, &s.pull, &s.information);
     for (double& p : s.pull.data()) p = -p;
@@ -75,45 +85,61 @@ SemTerm::State SemTerm::evaluate(const Grid<double>& z, const std::vector<double
   const Grid<double> through = factor_->spread(left, fit);
   for (std::size_t i = 0; i < through.size(); ++i) s.pull.data()[i] += through.data()[i];
   s.discrepancy = std::move(fit.field);
+  const auto shapes_begin = fit.coefficients.end() - factor_->shapes();
+  s.shape_sizes.assign(shapes_begin, fit.coefficients.end());
+  s.row_sizes.assign(shapes_begin - factor_->rows(), shapes_begin);
   return s;
 }
 
-void SemTerm::add_gradient(const State& s, const std::vector<double>& mixture,
-                           const Grid<double>& weights, const Near* near, Grid<double>& out,
-                           MixtureChange* by_mixture) const {
+void SemTerm::add_gradient(const State& s, const Mixture& mixture, const Grid<double>& weights,
+                           const Near* near, Grid<double>& out, MixtureChange* by_mixture) const {
   if (near) {
     for (int y = 0; y < frame_.height; ++y)
       for (int x = 0; x < frame_.width; ++x) near->scatter(weights(x, y), x, y, out);
   } else {
+    const Grid<double> sharp = blurred(weights, mixture.blur_px2);  // the blur is symmetric
     ModelImages w;
     for (std::size_t c = 0; c < channels_; ++c) {
-      w.push_back(weights);
-      for (double& v : w.back().data()) v *= mixture[c];
+      w.push_back(sharp);
+      for (double& v : w.back().data()) v *= mixture.gains[c];
     }
     const Grid<double> gradient = s.linear->gradient(w);
     for (std::size_t i = 0; i < out.size(); ++i) out.data()[i] += gradient.data()[i];
   }
   if (!by_mixture) return;
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    (*by_mixture)[0] += weights.data()[i] * (s.simulated.data()[i] - mixture[channels_]);
-    (*by_mixture)[1] += weights.data()[i];
-  }
+  const auto images = mixture_images(s, mixture);
+  for (int k = 0; k < mixture_numbers; ++k)
+    for (std::size_t i = 0; i < out.size(); ++i)
+      (*by_mixture)[k] += weights.data()[i] * images[k].data()[i];
 }
 
-Grid<double> SemTerm::change(const State& s, const std::vector<double>& mixture,
-                             const Grid<double>& dz, const MixtureChange& mixture_change,
-                             const Near* near) const {
-  Grid<double> out(frame_.width, frame_.height, mixture_change[1]);
+std::array<Grid<double>, mixture_numbers> SemTerm::mixture_images(const State& s,
+                                                                  const Mixture& mixture) const {
+  Grid<double> by_gain = s.simulated;
+  for (double& v : by_gain.data()) v -= mixture.offset;
+  return {std::move(by_gain), Grid<double>(frame_.width, frame_.height, 1.0),
+          change_of_blur(s.sharp, mixture.blur_px2)};
+}
+
+Grid<double> SemTerm::change(const State& s, const Mixture& mixture, const Grid<double>& dz,
+                             const MixtureChange& mixture_change, const Near* near) const {
+  Grid<double> out(frame_.width, frame_.height);
   if (near) {
     for (int y = 0; y < frame_.height; ++y)
       for (int x = 0; x < frame_.width; ++x) out(x, y) += near->change(dz, x, y);
   } else {
     const ModelImages d = s.linear->change(dz);
     for (std::size_t c = 0; c < channels_; ++c)
-      for (std::size_t i = 0; i < out.size(); ++i) out.data()[i] += mixture[c] * d[c].data()[i];
+      for (std::size_t i = 0; i < out.size(); ++i)
+        out.data()[i] += mixture.gains[c] * d[c].data()[i];
+    out = blurred(out, mixture.blur_px2);
   }
   for (std::size_t i = 0; i < out.size(); ++i)
-    out.data()[i] += mixture_change[0] * (s.simulated.data()[i] - mixture[channels_]);
+    out.data()[i] +=
+        mixture_change[0] * (s.simulated.data()[i] - mixture.offset) + mixture_change[1];
+  if (mixture_change[2] == 0) return out;
+  const Grid<double> wider = change_of_blur(s.sharp, mixture.blur_px2);
+  for (std::size_t i = 0; i < out.size(); ++i) out.data()[i] += mixture_change[2] * wider.data()[i];
   return out;
 }
 
@@ -124,19 +150,15 @@ Grid<double> SemTerm::precision(const State& s, const Grid<double>& change) cons
   return out;
 }
 
-std::array<double, 3> SemTerm::mixture_precision(const State& s,
-                                                 const std::vector<double>& mixture) const {
-  std::array<double, 3> out{};
-  for (int c = 0; c < 2; ++c) {
-    Grid<double> change(frame_.width, frame_.height);
-    for (std::size_t i = 0; i < change.size(); ++i)
-      change.data()[i] = c == 0 ? s.simulated.data()[i] - mixture[channels_] : 1;
-    const Grid<double> weighed = precision(s, change);
-    for (std::size_t i = 0; i < change.size(); ++i) {
-      if (c == 0) out[0] += weighed.data()[i] * change.data()[i];
-      if (c == 0) out[1] += weighed.data()[i];
-      else out[2] += weighed.data()[i];
-    }
+std::array<std::array<double, mixture_numbers>, mixture_numbers> SemTerm::mixture_precision(
+    const State& s, const Mixture& mixture) const {
+  std::array<std::array<double, mixture_numbers>, mixture_numbers> out{};
+  const auto images = mixture_images(s, mixture);
+  for (int i = 0; i < mixture_numbers; ++i) {
+    const Grid<double> weighed = precision(s, images[i]);
+    for (int k = 0; k < mixture_numbers; ++k)
+      for (std::size_t p = 0; p < weighed.size(); ++p)
+        out[i][k] += weighed.data()[p] * images[k].data()[p];
   }
   return out;
 }
@@ -154,7 +176,7 @@ Grid<double> SemTerm::draw_precision(const State& s, std::uint64_t seed) const {
   return factor_->precision(w);
 }
 
-SemTerm::Near SemTerm::near(const State& s, const std::vector<double>& mixture) const {
+SemTerm::Near SemTerm::near(const State& s, const Mixture& mixture) const {
   constexpr double k = 2 * std::numbers::pi / 12;
   const Grid<double> none(frame_.width, frame_.height);
   Near out{none, none, none, none, none};

@@ -13,10 +13,19 @@
 
 namespace surf::reconstruction {
 
-/// A change of gains and offset: the relative change of all gains, and the change of the offset.
-/// The gains keep their ratios, because channels are so alike that their gains would compensate
-/// errors of the model (docs/methods/calibration.md).
-using MixtureChange = std::array<double, 2>;
+/// How an image is made of the model's channels.
+struct Mixture {
+  std::vector<double> gains;  ///< one per channel
+  double offset = 0;
+  /// By how much the real spot's variance along each axis exceeds the model's, in squared pixels.
+  double blur_px2 = 0;
+};
+
+/// A change of the mixture: the relative change of all gains, the change of the offset, and of the
+/// blur. The gains keep their ratios, because channels are so alike that their gains would
+/// compensate errors of the model (docs/methods/calibration.md).
+constexpr int mixture_numbers = 3;
+using MixtureChange = std::array<double, mixture_numbers>;
 
 /// The likelihood of the SEM image, given a surface: the mixed channels of the model, and the
 /// negative log-likelihood (thesis, 9.2.2).
@@ -27,11 +36,14 @@ class SemTerm {
 
   struct State {
     std::unique_ptr<Linearization> linear;
+    Grid<double> sharp;        ///< the simulated image without offset and blur
     Grid<double> simulated;    ///< on the surface's samples, in the image's unit
     Grid<double> pull;         ///< derivative of the term by each simulated pixel, 0 where not used
     Grid<double> information;  ///< expected second derivative by each simulated pixel
     double value = 0;
     Grid<double> discrepancy;  ///< the most likely one; empty without
+    /// The likeliest sizes of SemShapes: of the surface's rows, of images.
+    std::vector<double> row_sizes, shape_sizes;
   };
 
   /// A sparse approximation of J that is exact for waves of 12 samples along x and y: a pixel
@@ -46,28 +58,27 @@ class SemTerm {
     /// The transpose of `change`.
     void scatter(double weight, int x, int y, Grid<double>& out) const;
   };
-  Near near(const State& state, const std::vector<double>& mixture) const;
+  Near near(const State& state, const Mixture& mixture) const;
 
-  /// `mixture`: one gain per channel, then the offset.
-  State evaluate(const Grid<double>& z_nm, const std::vector<double>& mixture) const;
+  State evaluate(const Grid<double>& z_nm, const Mixture& mixture) const;
 
   /// The vector-Jacobian product: out += J^T w. If `by_mixture` is given, the derivatives by
   /// MixtureChange are added to it. `near`, if given, replaces J.
-  void add_gradient(const State& state, const std::vector<double>& mixture,
-                    const Grid<double>& weights, const Near* near, Grid<double>& out,
-                    MixtureChange* by_mixture) const;
+  void add_gradient(const State& state, const Mixture& mixture, const Grid<double>& weights,
+                    const Near* near, Grid<double>& out, MixtureChange* by_mixture) const;
   /// The Jacobian-vector product J (dz, mixture_change). `near`, if given, replaces J.
-  Grid<double> change(const State& state, const std::vector<double>& mixture,
-                      const Grid<double>& dz_nm, const MixtureChange& mixture_change,
-                      const Near* near = nullptr) const;
+  Grid<double> change(const State& state, const Mixture& mixture, const Grid<double>& dz_nm,
+                      const MixtureChange& mixture_change, const Near* near = nullptr) const;
 
   /// The product of the second derivative by the simulated pixels, in which the discrepancy is
   /// eliminated, and a change of them.
   Grid<double> precision(const State& state, const Grid<double>& change) const;
-  /// The same between the two numbers of a change of the mixture: first with first, first with
-  /// second, second with second.
-  std::array<double, 3> mixture_precision(const State& state,
-                                          const std::vector<double>& mixture) const;
+  /// The change of the simulated image with each number of a change of the mixture.
+  std::array<Grid<double>, mixture_numbers> mixture_images(const State& state,
+                                                           const Mixture& mixture) const;
+  /// `precision` between the numbers of a change of the mixture.
+  std::array<std::array<double, mixture_numbers>, mixture_numbers> mixture_precision(
+      const State& state, const Mixture& mixture) const;
   /// A draw of `precision`: normal, with that covariance.
   Grid<double> draw_precision(const State& state, std::uint64_t seed) const;
 
@@ -78,7 +89,7 @@ class SemTerm {
   const SemNoise& noise() const { return noise_; }
 
  private:
-  Grid<double> mixed(const ModelImages& images, const std::vector<double>& mixture) const;
+  Grid<double> mixed(const ModelImages& images, const Mixture& mixture) const;
 
   std::shared_ptr<const ImageModel> model_;
   SurfaceFrame frame_;

@@ -23,8 +23,12 @@ struct SurfaceFrame {
 
 /// A change of the map from the AFM's frame to the surface's samples. It is given by displacements
 /// in samples: at the middle of the scan's used part (0 and 3), and the additional displacement at
-/// one reach along x (1, 4) and along y (2, 5). So all six numbers have the same scale.
-inline constexpr int map_numbers = 6;
+/// one reach along x (1, 4) and along y (2, 5), and of a drift of the scan that is not steady (6,
+/// 7), which bends its rows' places as `drift_share`. So all numbers have the same scale.
+inline constexpr int affine_numbers = 6, map_numbers = 8;
 using MapChange = std::array<double, map_numbers>;
+
+/// The share of the drift at a row of the scan, `across` reaches from the middle.
+inline double drift_share(double across) { return across * across - 1.0 / 3; }
 
 }  // namespace surf::reconstruction

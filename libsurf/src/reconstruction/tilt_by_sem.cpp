@@ -36,8 +36,7 @@ SemTilt tilt_by_sem(const HeightField& surface, const SemData& sem, const Affine
       planes[0](x, y) = p.x - middle.x;
       planes[1](x, y) = p.y - middle.y;
     }
-  std::vector<double> mixture = sem.gains;
-  mixture.push_back(sem.offset);
+  Mixture mixture{sem.gains, sem.offset, sem.blur_px2};
   while (tilt.iterations < most_iterations) {
     ++tilt.iterations;
     Grid<double> z = surface.z_nm;
@@ -72,8 +71,8 @@ SemTilt tilt_by_sem(const HeightField& surface, const SemData& sem, const Affine
     if (!covariance.allFinite()) break;  // nothing but a constant: gain and offset are one
     const Eigen::Vector4d step = -(covariance * gradient);
     tilt.x += step(0), tilt.y += step(1);
-    for (std::size_t c = 0; c + 1 < mixture.size(); ++c) mixture[c] *= 1 + step(2);
-    mixture.back() += step(3);
+    for (double& gain : mixture.gains) gain *= 1 + step(2);
+    mixture.offset += step(3);
     tilt.doubt = {std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1))};
     if (std::abs(step(0)) < settled * tilt.doubt.x && std::abs(step(1)) < settled * tilt.doubt.y)
       break;

@@ -30,7 +30,7 @@ constexpr double pixels_that_err_together = 50;
 
 // Numbers of a try, each in units of how far it may well be from the usual one.
 enum Number { radius, angle, lean_x, lean_y, wide_x, wide_y, first_of_map };
-constexpr int numbers = first_of_map + map_numbers;
+constexpr int numbers = first_of_map + affine_numbers;
 constexpr double unit_of_angle_deg = 8, unit_of_waves = 0.2, unit_of_map_px = 3;
 using Numbers = std::array<double, numbers>;  // the radius as its logarithm
 
@@ -99,7 +99,20 @@ class Search {
     return m;
   }
 
-  double residual(const Tip& tip, const Affine& map) const {
+  double residual(const Tip& tip, const Affine& map) const { return fit(tip, map).residual_rms; }
+
+  /// The best of the round tips.
+  double evidence() const {
+    double best = 0;
+    for (const double r : radii_nm) {
+      const double explained = std::min(fit(tip({std::log(r)}), map_).explained, 1 - 1e-9);
+      best = std::max(best, -0.5 * static_cast<double>(pixels_) / pixels_that_err_together *
+                                std::log1p(-explained));
+    }
+    return best;
+  }
+
+  Calibration fit(const Tip& tip, const Affine& map) const {
     watch_.check();
     AfmData afm;
     afm.image = scan_;
@@ -114,7 +127,7 @@ class Search {
                                       {.threads = threads_});
     CalibrationOptions one;
     one.ratios.assign(images.channels.size(), 1);
-    return calibrate(images, one).residual_rms;
+    return calibrate(images, one);
   }
 
   double badness(const Numbers& n) {
@@ -186,6 +199,29 @@ class Search {
 };
 
 }  // namespace
+
+double place_evidence(const HeightField& scan, const PlacedImage& sem, const ImageModel& model,
+                      const Affine& sem_to_afm, int threads, const Watch& watch) {
+  return Search(scan, sem, model, sem_to_afm, threads, watch).evidence();
+}
+
+double beyond(const TipBound& bound, const Tip& tip) {
+  if (!(bound.threshold_nm > 0)) return 0;
+  const Grid<double>& limit = bound.tip.z_nm;
+  double squares = 0;
+  for (int y = 0; y < tip.z_nm.height(); ++y)
+    for (int x = 0; x < tip.z_nm.width(); ++x) {
+      const int column = x - tip.apex_x + bound.tip.apex_x, row = y - tip.apex_y + bound.tip.apex_y;
+      if (column < 1 || row < 1 || column + 1 >= limit.width() || row + 1 >= limit.height())
+        continue;
+      double duller = limit(column, row);
+      for (int v = -1; v <= 1; ++v)
+        for (int u = -1; u <= 1; ++u) duller = std::max(duller, limit(column + u, row + v));
+      const double over = (tip.z_nm(x, y) - duller) / bound.threshold_nm - 1;
+      if (over > 0) squares += over * over;
+    }
+  return std::sqrt(squares);
+}
 
 FoundTip find_tip_by_sem(const HeightField& scan, const Tip& tip, const PlacedImage& sem,
                          const ImageModel& model, const Affine& sem_to_afm, int threads,

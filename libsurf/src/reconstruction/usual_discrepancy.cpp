@@ -51,4 +51,16 @@ std::vector<SemDiscrepancy> usual_discrepancy(const PlacedImage& image, double s
   return {std::move(fine), std::move(wide)};
 }
 
+Grid<double> line_jitter(const PlacedImage& image, double deviation_px) {
+  validate(image, "SEM image");
+  if (!(deviation_px >= 0 && deviation_px <= 5))
+    throw InvalidInput("jitter of lines", "it is not from 0 to 5 pixels", "0.3 pixels are usual");
+  const Grid<double> soft = GaussianBasis(soft_px, 1).sum(image.values);
+  Grid<double> out(soft.width(), soft.height());
+  for (int y = 0; y < out.height(); ++y)
+    for (int x = 1; x + 1 < out.width(); ++x)
+      if (image.is_valid(x, y)) out(x, y) = -0.5 * deviation_px * (soft(x + 1, y) - soft(x - 1, y));
+  return out;
+}
+
 }  // namespace surf

@@ -18,6 +18,7 @@ double normal(RandomStream& random) {
 
 struct Case {
   std::vector<SemDiscrepancy> parts;
+  SemShapes shapes;
   Grid<double> weight{34, 23};
 
   Case() {
@@ -30,6 +31,10 @@ struct Case {
         parts[1].deviation(x, y) = 2;
         weight(x, y) = (x + y) % 9 == 0 ? 0 : 1 / (0.5 + random.uniform());
       }
+    shapes.of_rows = Grid<double>(34, 23);
+    shapes.of_image.assign(2, shapes.of_rows);
+    for (Grid<double>* shape : {&shapes.of_rows, &shapes.of_image[0], &shapes.of_image[1]})
+      for (double& v : shape->data()) v = 3 * normal(random);
   }
 };
 
@@ -42,7 +47,7 @@ double dot(const Grid<double>& a, const Grid<double>& b) {
 // For noise and discrepancy as described, r.Q r is chi-squared with as many degrees as pixels.
 TEST(Discrepancy, PrecisionIsTheInverseOfTheCovariance) {
   const Case c;
-  const Discrepancy discrepancy(c.parts);
+  const Discrepancy discrepancy(c.parts, c.shapes);
   const auto factor = discrepancy.factor(c.weight);
   double pixels = 0, sum = 0;
   for (const double w : c.weight.data()) pixels += w > 0;
@@ -60,7 +65,7 @@ TEST(Discrepancy, PrecisionIsTheInverseOfTheCovariance) {
 
 TEST(Discrepancy, TheLikeliestOneLeavesWhatThePrecisionSays) {
   const Case c;
-  const Discrepancy discrepancy(c.parts);
+  const Discrepancy discrepancy(c.parts, c.shapes);
   const auto factor = discrepancy.factor(c.weight);
   RandomStream random(2, 0, 0);
   Grid<double> r(34, 23);
@@ -75,6 +80,32 @@ TEST(Discrepancy, TheLikeliestOneLeavesWhatThePrecisionSays) {
   EXPECT_NEAR(left, 0.5 * dot(r, factor->precision(r)), 1e-9 * left);
   // At the optimum nothing rises through the fit.
   for (const double s : factor->spread(count, fit).data()) EXPECT_NEAR(s, 0, 1e-9);
+}
+
+TEST(Discrepancy, FindsTheSizesOfShapesWithoutAnyOtherDiscrepancy) {
+  const Case c;
+  const auto factor = Discrepancy({}, c.shapes).factor(Grid<double>(34, 23, 1e6));
+  Grid<double> left(34, 23);
+  for (int y = 0; y < 23; ++y)
+    for (int x = 0; x < 34; ++x)
+      left(x, y) = (y == 7 ? 1.5 * c.shapes.of_rows(x, y) : 0) - 0.5 * c.shapes.of_image[1](x, y);
+  const Discrepancy::Factor::Fit fit = factor->fit(left);
+  ASSERT_EQ(fit.coefficients.size(), 25u);
+  EXPECT_EQ(factor->rows(), 23);
+  EXPECT_EQ(factor->shapes(), 2);
+  EXPECT_NEAR(fit.coefficients[7], 1.5, 1e-4);
+  EXPECT_NEAR(fit.coefficients[6], 0, 1e-4);
+  EXPECT_NEAR(fit.coefficients[23], 0, 1e-4);
+  EXPECT_NEAR(fit.coefficients[24], -0.5, 1e-4);
+}
+
+TEST(LineJitter, IsTheSlopeAlongRows) {
+  PlacedImage image;
+  image.values = Grid<double>(40, 9);
+  for (int y = 0; y < 9; ++y)
+    for (int x = 0; x < 40; ++x) image.values(x, y) = 7.0 * x;
+  EXPECT_NEAR(line_jitter(image, 0.3)(20, 4), -2.1, 1e-9);
+  EXPECT_THROW(line_jitter(image, -1), InvalidInput);
 }
 
 TEST(Discrepancy, DrawsHaveTheDeviationAndTheLengthThatWereAsked) {

@@ -34,6 +34,16 @@ TEST(TipSearch, FindsADullTipFromASharpOneAndADisplacedMap) {
   EXPECT_LT(std::hypot(there.x - right.x, there.y - right.y), 6);
 }
 
+TEST(TipSearch, TellsHowFarATipIsBeyondABlindBound) {
+  const Tip tip = conical_tip(60, 0.4, {20, 20, 11, 11});
+  const TipBound dull{conical_tip(300, 0.5, {20, 20, 11, 11}), 1},
+      sharp{conical_tip(8, 0.2, {20, 20, 11, 11}), 0.2};
+  EXPECT_EQ(beyond(dull, tip), 0);
+  EXPECT_EQ(beyond({tip, 0.1}, tip), 0);
+  EXPECT_GT(beyond(sharp, tip), 20);
+  EXPECT_EQ(beyond({sharp.tip, 0}, tip), 0);  // without a threshold there is no bound
+}
+
 TEST(TipSearch, IsTheSameOnAnyNumberOfThreads) {
   const test::SmallScene scene;
   const auto run = [&](int threads) {

@@ -25,6 +25,8 @@ struct RoundTipSummary {
 
 struct RoundTip {
   Tip tip;  ///< one sample, sharp, if nothing bounds the tip
+  /// The largest blind tip, of any shape: the true tip is nowhere duller, but for the noise.
+  Tip bound;
   RoundTipSummary summary;
 };
 

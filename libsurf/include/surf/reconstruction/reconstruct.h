@@ -40,6 +40,20 @@ struct SemDiscrepancy {
   double correlation_px = 4;  ///< its correlation length, 1 to 1000; rounded to whole pixels
 };
 
+/// What the SEM image may have beside model, noise and discrepancy: images of known shape and
+/// unknown size. Sizes are normal, of mean 0 and deviation 1, and eliminated with the discrepancy.
+struct SemShapes {
+  /// A size for each row: what lines that are displaced by one standard deviation change. Empty:
+  /// lines are where they belong.
+  Grid<double> of_rows;
+  /// A size for each image: what one standard deviation of it changes, as of a film's thickness.
+  std::vector<Grid<double>> of_image;
+};
+
+/// What a displacement of lines along x by `deviation_px` changes in the image, pixel by pixel: its
+/// slope over 1.5 pixels. Throws InvalidInput.
+Grid<double> line_jitter(const PlacedImage& image, double deviation_px);
+
 /// A discrepancy that grows with how far a pixel stands out of the image: `share` of its distance
 /// from the median grey level, over some pixels, and half of that as a gain that drifts over the
 /// image. Throws InvalidInput.
@@ -56,6 +70,10 @@ struct SemData {
   /// Independent of each other, in the order of their correlation lengths; none: the model is
   /// right.
   std::vector<SemDiscrepancy> discrepancy = {};
+  SemShapes shapes = {};
+  /// By how much the real spot's variance along each axis exceeds the model's, in squared pixels;
+  /// -0.4 to 2.
+  double blur_px2 = 0;
 };
 
 enum class ReconstructionMethod {
@@ -91,7 +109,12 @@ struct ReconstructionOptions {
   /// counts in the deviations alone.
   double place_doubt_px = 0;
 
-  bool refine_transform = true;    ///< the map is fitted together with the surface
+  bool refine_transform = true;  ///< the map is fitted together with the surface
+  /// A drift of the scan that is not steady is fitted with the map: a parabola along its slow axis.
+  bool refine_drift = false;
+  /// The spot's width is fitted, too, from the model's on. The image tells it badly: a wider spot
+  /// and a duller tip make much the same of it.
+  bool refine_spot = false;
   bool refine_calibration = true;  ///< the offset and a common factor of all gains are fitted, too
   /// The tip is fitted, too, starting from the given one: seven factors of its slope, between the
   /// apex and the rim. Only for Gauss-Newton with both images: the SEM image shows how far the tip
@@ -139,9 +162,10 @@ struct ReconstructionState {
   HeightField surface;
   Affine sem_to_afm;
   std::vector<double> gains;
-  double offset = 0;
+  double offset = 0, blur_px2 = 0;
   std::vector<ScaleReport> scales;  ///< the finished scales
   std::vector<double> tip_change;   ///< change from the given tip; empty: not fitted
+  Point2 scan_drift_px{};
 };
 
 /// Stores states, so that an interrupted reconstruction can be resumed. It is called after each
@@ -160,7 +184,10 @@ struct Reconstruction {
   HeightField surface;
   Affine sem_to_afm;
   std::vector<double> gains;
-  double offset = 0;
+  double offset = 0, blur_px2 = 0;  ///< see SemData
+  /// What the map is displaced by at the scan's first and last rows beyond a steady drift, pixels
+  /// of the surface: times 2/3 there, minus 1/3 in the middle.
+  Point2 scan_drift_px{};
   Tip tip;            ///< fitted or given tip, on the AFM's samples; empty without AFM
   HeightField start;  ///< initial surface: the eroded scan on the surface's samples
 
@@ -171,6 +198,8 @@ struct Reconstruction {
   Grid<double> simulated_sem;    ///< on the surface's samples. Empty without SEM
   Grid<double> sem_residual;     ///< whitened, with the discrepancy taken off
   Grid<double> sem_discrepancy;  ///< what the model is off by, most likely. Empty without
+  /// The likeliest sizes of `SemShapes`, in standard deviations; empty without.
+  std::vector<double> sem_row_sizes, sem_shape_sizes;
   /// Its root mean square over the standard deviation of the simulated image.
   double sem_discrepancy_share = 0;
 

@@ -24,6 +24,24 @@ struct FoundTip {
   double residual_before = 0, residual = 0;
 };
 
+/// How well the scan explains the SEM image at a place, eroded by the best of ten round tips of
+/// radii from 10 to 200 nm: the gain in log-likelihood over an image without any structure, where
+/// 50 pixels count as one, because they share what the model is off by. Throws as
+/// `find_tip_by_sem`.
+double place_evidence(const HeightField& scan, const PlacedImage& sem, const ImageModel& model,
+                      const Affine& sem_to_afm, int threads = 0, const Watch& watch = {});
+
+/// A blind tip, which bounds the true one: at no sample is the tip duller than the duller ones of
+/// the bound's samples around (a contact is known to one sample), by more than the threshold.
+struct TipBound {
+  Tip tip;  ///< at the scan's pitch
+  double threshold_nm = 0;
+};
+
+/// By how many thresholds a tip is duller than the bound allows: the root of the sum of squares
+/// over all samples; 0: nowhere. Samples beyond either tip do not count.
+double beyond(const TipBound& bound, const Tip& tip);
+
 /// Finds the tip, and the place, whose eroded scan explains the SEM image best: under a tip that is
 /// too sharp walls are too wide, under one that is too dull too narrow, and the SEM image shows
 /// where they are. Each try erodes the scan and predicts the SEM image of that with one gain for

@@ -40,10 +40,11 @@ struct PreparedAfm {
   std::optional<NoiseEstimate> noise_estimate;  ///< absent: the noise was given
   Tip tip;  ///< at the image's pitch; its doubt comes from the search or from its file
   bool tip_given = false;
-  bool tip_round = false;                 ///< the tip was assumed to be round
-  bool tip_from_sem = false;              ///< it was found with the SEM image (find_tip_by_sem)
-  double tip_threshold_nm = 0;            ///< threshold of the blind reconstruction; else 0
-  CertaintyMap certainty;                 ///< also holds the eroded scan
+  bool tip_round = false;        ///< the tip was assumed to be round
+  bool tip_from_sem = false;     ///< it was found with the SEM image (find_tip_by_sem)
+  std::optional<Tip> tip_bound;  ///< the blind tip of any shape that bounds it; absent: not sought
+  double tip_threshold_nm = 0;   ///< threshold of the blind reconstruction; else 0
+  CertaintyMap certainty;        ///< also holds the eroded scan
   std::vector<std::string> notes;         ///< what was done, for the user
   std::vector<std::string> warnings;      ///< possible mistakes, and what to do about them
   std::vector<std::string> tip_warnings;  ///< the same of the tip, which another step may replace

@@ -33,6 +33,8 @@ struct ReconstructJob {
   /// What the model of SEM images may be off by, as a share of the image's contrast: see
   /// `usual_discrepancy`. 0: it is right.
   double model_error = 0.05;
+  /// Standard deviation of displacements of the SEM image's rows along themselves, in pixels.
+  double line_jitter_px = 0;
   /// Rounds in which Monte Carlo images of the surface correct the model, and their electrons per
   /// pixel. Models of other signals than SE and BSE cannot be corrected.
   int corrections = 2;
@@ -58,7 +60,9 @@ void describe(ParameterVisitor& visit, ReconstructJob& job);
 /// How a part of a surface agrees with the truth.
 struct RegionReport {
   /// "flat": no slope of 6 degrees within 3 pixels; "wall": steeper than 30 degrees; "foot": beside
-  /// a wall; "untouched": the tip did not touch it. The true surface says what is what.
+  /// a wall; "untouched": the tip did not touch it; "edge": the lateral place of walls in the
+  /// middle of their height, where the numbers below are of places along rows and columns. The true
+  /// surface says what is what.
   std::string name;
   std::int64_t pixels = 0;
   double rms_nm = 0, stated_nm = 0;       ///< error, and posterior standard deviation

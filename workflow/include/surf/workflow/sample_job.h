@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,14 @@ struct SampleJob {
   mc::Physics physics;
   double tip_lean_deg = 0, tip_azimuth_deg = 0;
   double gain_drift = 0;
+  /// Nor these: another spot than its model's (absent: the scene's), and a detector that sees some
+  /// of the secondaries only (as `parse_detectors` reads it; empty: all of them).
+  std::optional<double> spot_nm;
+  std::string detector;
+  /// Nor these: rows of the scan that are displaced as a parabola along its slow axis, by this many
+  /// pixels of the SEM image more at its ends than in the middle; and rows of the SEM image that
+  /// are displaced along themselves by normal numbers of this deviation, in pixels.
+  double scan_drift_px = 0, line_jitter_px = 0;
   int threads = 0;               ///< 0: one per hardware thread. Does not change the result
   std::filesystem::path cache;   ///< where libraries of cascades are stored; empty: nowhere
   CheckpointOptions checkpoint;  ///< for the SEM image; by default the file is beside sem.tif
