@@ -95,29 +95,22 @@ Grid<double> slopes_of(const HeightField& f) {
 /// First that of all pixels.
 std::vector<RegionReport> regions_of(const Reconstruction& result, const HeightField& truth,
                                      const Differences& d) {
-  const Grid<double> slope = slopes_of(truth), around = largest_around(slope, around_px);
-  std::vector<RegionReport> regions(5);
-  const char* const names[] = {"all", "flat", "wall", "foot", "untouched"};
-  for (std::size_t i = 0; i < d.less.z_nm.size(); ++i) {
-    if (!d.less.valid.data()[i]) continue;
-    const double off = std::abs(d.less.z_nm.data()[i] - d.middle),
-                 deviation = result.deviation_nm.data()[i];
-    const bool wall = slope.data()[i] > wall_above;
-    const bool in[] = {true, around.data()[i] < flat_below, wall,
-                       !wall && around.data()[i] > wall_above,
-                       !result.data_support.empty() && (result.data_support.data()[i] & 1) == 0};
-    for (std::size_t r = 0; r < regions.size(); ++r) {
-      if (!in[r]) continue;
-      ++regions[r].pixels;
-      regions[r].rms_nm += off * off;
-      regions[r].stated_nm += deviation * deviation;
-      regions[r].coverage_1 += off <= deviation;
-      regions[r].coverage_2 += off <= 2 * deviation;
+  std::vector<RegionReport> regions;
+  for (const PixelRegion& in : pixel_regions(truth, result.data_support)) {
+    RegionReport& region = regions.emplace_back();
+    region.name = in.name;
+    for (std::size_t i = 0; i < d.less.z_nm.size(); ++i) {
+      if (!d.less.valid.data()[i] || !in.pixels.data()[i]) continue;
+      const double off = std::abs(d.less.z_nm.data()[i] - d.middle),
+                   deviation = result.deviation_nm.data()[i];
+      ++region.pixels;
+      region.rms_nm += off * off;
+      region.stated_nm += deviation * deviation;
+      region.coverage_1 += off <= deviation;
+      region.coverage_2 += off <= 2 * deviation;
     }
   }
-  for (std::size_t r = 0; r < regions.size(); ++r) {
-    RegionReport& region = regions[r];
-    region.name = names[r];
+  for (RegionReport& region : regions) {
     const auto n = static_cast<double>(std::max<std::int64_t>(region.pixels, 1));
     region.rms_nm = std::sqrt(region.rms_nm / n);
     region.stated_nm = std::sqrt(region.stated_nm / n);
@@ -129,6 +122,22 @@ std::vector<RegionReport> regions_of(const Reconstruction& result, const HeightF
 }
 
 }  // namespace
+
+std::vector<PixelRegion> pixel_regions(const HeightField& truth,
+                                       const Grid<unsigned char>& data_support) {
+  const Grid<double> slope = slopes_of(truth), around = largest_around(slope, around_px);
+  std::vector<PixelRegion> out;
+  for (const char* name : {"all", "flat", "wall", "foot", "untouched"})
+    out.push_back({name, Mask(slope.width(), slope.height())});
+  for (std::size_t i = 0; i < slope.size(); ++i) {
+    const bool wall = slope.data()[i] > wall_above;
+    const bool in[] = {true, around.data()[i] < flat_below, wall,
+                       !wall && around.data()[i] > wall_above,
+                       !data_support.empty() && (data_support.data()[i] & 1) == 0};
+    for (std::size_t r = 0; r < out.size(); ++r) out[r].pixels.data()[i] = in[r];
+  }
+  return out;
+}
 
 HeightField truth_on(const HeightField& surface, const HeightField& truth) {
   PlacedImage place;

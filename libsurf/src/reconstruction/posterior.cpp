@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "posterior.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "afm/normal_numbers.h"
@@ -81,35 +82,100 @@ Step solve(const Objective& o, const Product& product, const Preconditioner& m, 
 
 }  // namespace
 
-Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint64_t seed,
-                    int threads, Precision precision, const Watch& watch) {
-  Objective::State state = o.evaluate(at);
+Curvature expected_curvature(const Objective& o, const Unknowns& at, std::uint64_t seed,
+                             int threads, Precision precision, const Watch& watch) {
+  Curvature a{o.evaluate(at), {}, {}, {}};
+  auto m = std::make_unique<Preconditioner>(Preconditioner::usual_tile_px, threads, precision);
   const Grid<double> found = o.prior.squared_curvature(at.z_nm);
-  const SemTerm::Near near = o.sem ? o.sem->near(*state.sem, at.mixture) : SemTerm::Near();
-  const auto product = [&](const Step& v) { return o.product(at, state, v, &near); };
-  Preconditioner m(Preconditioner::usual_tile_px, threads, precision);
-  Grid<double> without_sem;
+  if (o.sem) a.near = o.sem->near(*a.state.sem, at.mixture);
   const GaussianBasis bends(bend_px, threads);
   for (int round = 0; round < rounds; ++round) {
-    m.factor(o, at, state);
-    Preconditioner::Variances drawn = m.variances(o.prior, cheap_draws[round], seed, watch);
-    without_sem = std::move(drawn.height_nm2);
+    m->factor(o, at, a.state);
+    Preconditioner::Variances drawn = m->variances(o.prior, cheap_draws[round], seed, watch);
+    a.height_nm2 = std::move(drawn.height_nm2);
     if (round + 1 == rounds) break;
     // Expected square: variance plus squared value.
     Grid<double>& curvature = drawn.curvature_per_nm2;
     for (std::size_t i = 0; i < curvature.size(); ++i) curvature.data()[i] += found.data()[i];
     curvature = bends.sum(curvature);
-    state.prior_weights = o.prior.weights_of(curvature);
+    a.state.prior_weights = o.prior.weights_of(curvature);
   }
-  without_sem = GaussianBasis(0.8, threads).sum(without_sem);
+  a.preconditioner = std::move(m);
+  return a;
+}
+
+std::vector<double> deviations_of(const Objective& o, const Unknowns& at, const Curvature& a,
+                                  const std::vector<Step>& functions, const Watch& watch) {
+  const auto product = [&](const Step& v) { return o.product(at, a.state, v, &a.near); };
+  std::vector<double> out;
+  for (const Step& f : functions)
+    out.push_back(
+        std::sqrt(std::max(0.0, dot(f, solve(o, product, *a.preconditioner, f, 0.05, watch)))));
+  return out;
+}
+
+std::vector<Step> map_functions(const Objective& o, const Unknowns& at) {
+  const SurfaceFrame& f = o.frame;
+  const Point2 middle{f.origin_x_nm + 0.5 * (f.width - 1) * f.pitch_nm,
+                      f.origin_y_nm + 0.5 * (f.height - 1) * f.pitch_nm};
+  const auto parts = [&](int number, double samples) {
+    Step step = o.zero();
+    step.map[static_cast<std::size_t>(number)] = samples;
+    const Affine map = o.moved(at, step).surface_to_afm;
+    const AffineParts p = parts_of(map);
+    const Point2 there = map(middle);
+    return MapChange{p.rotation_rad, p.scale_x, p.scale_y, p.shear, there.x, there.y};
+  };
+  std::vector<Step> out(map_numbers, o.zero());
+  constexpr double samples = 1e-4;
+  for (int k = 0; k < map_numbers; ++k) {
+    const MapChange up = parts(k, samples), down = parts(k, -samples);
+    for (std::size_t i = 0; i < map_numbers; ++i)
+      out[i].map[static_cast<std::size_t>(k)] = (up[i] - down[i]) / (2 * samples);
+  }
+  return out;
+}
+
+namespace {
+
+UnknownDeviations few_deviations(const Objective& o, const Unknowns& at, const Curvature& a,
+                                 const TipChange& tip_squares, const Watch& watch) {
+  UnknownDeviations out;
+  if (o.fit_map) {
+    const std::vector<double> d = deviations_of(o, at, a, map_functions(o, at), watch);
+    out.sem_to_afm = {d[0], d[1], d[2], d[3], d[4], d[5]};
+  }
+  if (o.fit_mixture) {
+    std::vector<Step> functions(2, o.zero());
+    functions[0].mixture[0] = functions[1].mixture[1] = 1;
+    const std::vector<double> d = deviations_of(o, at, a, functions, watch);
+    out.gain_factor = d[0];
+    out.offset = d[1];
+  }
+  if (o.fit_tip)
+    for (const double square : tip_squares) out.tip_change.push_back(std::sqrt(square));
+  return out;
+}
+
+}  // namespace
+
+Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint64_t seed,
+                    int threads, Precision precision, const Watch& watch) {
+  const Curvature a = expected_curvature(o, at, seed, threads, precision, watch);
+  const Objective::State& state = a.state;
+  const Preconditioner& m = *a.preconditioner;
+  const auto product = [&](const Step& v) { return o.product(at, state, v, &a.near); };
+  const Grid<double> without_sem = GaussianBasis(0.8, threads).sum(a.height_nm2);
   Grid<double> drawn(o.frame.width, o.frame.height);
+  TipChange tip_squares{};
   for (int d = 0; d < draws; ++d) {
     watch.report(draws + d, 2 * draws);
-    Step r = data_pull(o, at, state, &near, seed + static_cast<std::uint64_t>(d));
+    Step r = data_pull(o, at, state, &a.near, seed + static_cast<std::uint64_t>(d));
     add_prior_pull(o, state, seed + static_cast<std::uint64_t>(d), r);
     const Step x = solve(o, product, m, r, 0.05, watch);
     for (std::size_t i = 0; i < drawn.size(); ++i)
       drawn.data()[i] += x.z_nm.data()[i] * x.z_nm.data()[i] / draws;
+    for (std::size_t k = 0; k < tip_numbers; ++k) tip_squares[k] += x.tip[k] * x.tip[k] / draws;
   }
   const GaussianBasis around(around_px, threads);
   const Grid<double> mean = around.sum(drawn), expected = around.sum(without_sem);
@@ -121,7 +187,8 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
   for (double& b : bias.data()) b *= b;
   bias = around.sum(bias);
   Posterior out{Grid<double>(o.frame.width, o.frame.height),
-                Grid<unsigned char>(o.frame.width, o.frame.height)};
+                Grid<unsigned char>(o.frame.width, o.frame.height),
+                few_deviations(o, at, a, tip_squares, watch)};
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     const double ratio = mean.data()[i] / expected.data()[i];
     out.deviation_nm.data()[i] = std::sqrt(without_sem.data()[i] * ratio + bias.data()[i]);

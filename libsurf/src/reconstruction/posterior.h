@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <vector>
 
 #include "objective.h"
 #include "preconditioner.h"
@@ -13,7 +15,29 @@ struct Posterior {
   /// Posterior standard deviation; map and mixture are free if they are fitted.
   Grid<double> deviation_nm;
   Grid<unsigned char> data_support;  ///< see Reconstruction
+  UnknownDeviations unknowns;        ///< of map, gains, offset and tip
 };
+
+/// The second derivative A at the end of the fit, and what solves with it.
+struct Curvature {
+  /// The state at the end, with the prior's weights of the expected squared curvature.
+  Objective::State state;
+  SemTerm::Near near;       ///< empty without SEM
+  Grid<double> height_nm2;  ///< variances of heights without the SEM image, by cheap draws
+  std::unique_ptr<const Preconditioner> preconditioner;  ///< factorised for `state`
+};
+Curvature expected_curvature(const Objective& objective, const Unknowns& at, std::uint64_t seed,
+                             int threads, Precision precision, const Watch& watch);
+
+/// The posterior standard deviation of each linear function of the unknowns, which is given by its
+/// derivatives. It is the root of c.A^-1 c, and costs a solution of the linear system.
+std::vector<double> deviations_of(const Objective& objective, const Unknowns& at,
+                                  const Curvature& curvature, const std::vector<Step>& functions,
+                                  const Watch& watch);
+
+/// The derivatives of the map's parts, in the order of AffineParts; the shift is that of the middle
+/// of the surface.
+std::vector<Step> map_functions(const Objective& objective, const Unknowns& at);
 
 /// The posterior standard deviations, linearised: the average over draws from N(0, A^-1). Each draw
 /// costs as much as a solution of the linear system, so there are few, and their estimate scatters

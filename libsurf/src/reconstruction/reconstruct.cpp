@@ -395,6 +395,7 @@ class Work {
       add(common_doubts(), out.surface, cut(GaussianBasis(soft_px, options_.threads).sum(at_.z_nm)),
           at_.surface_to_afm, out.deviation_nm);
       out.data_support = cut(p.data_support);
+      out.unknown_deviations = p.unknowns;
     }
     return out;
   }

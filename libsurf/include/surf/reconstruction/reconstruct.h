@@ -178,6 +178,20 @@ class ReconstructionJournal {
   virtual void keep(const ReconstructionState& state) = 0;
 };
 
+/// Posterior standard deviations of the unknowns other than heights, linearised like those of the
+/// heights. Without the tilt and the displacement of walls that are added to the heights'. 0: not
+/// fitted.
+struct UnknownDeviations {
+  /// Of each part of the map from SEM to AFM; the shift is that of the SEM image's middle.
+  AffineParts sem_to_afm{0, 0, 0, 0, 0, 0};
+  double gain_factor = 0;  ///< of the common factor of all gains, about 1
+  double offset = 0;       ///< in the SEM image's unit
+  /// Of each number of ReconstructionState::tip_change: natural logarithms of factors of the tip's
+  /// slope. From as many draws as `probes`, so that six draws tell them to within 30 %. Empty: not
+  /// fitted.
+  std::vector<double> tip_change;
+};
+
 struct Reconstruction {
   /// In the SEM's frame and on its pixels, with the AFM's heights. With AFM data only: on the
   /// scan's samples.
@@ -209,6 +223,7 @@ struct Reconstruction {
   /// The data that support each height. 1: the tip touched it. 2: the SEM image at least halves the
   /// variance of the height. 3: both. 0: only its neighbours and the prior.
   Grid<unsigned char> data_support;
+  UnknownDeviations unknown_deviations;  ///< all 0 if the uncertainty is not wanted
   std::vector<ScaleReport> scales;
   bool converged = true;
   /// For people; if there are any, look before you trust the result.

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whether the reconstruction's posterior is right: the deviations of heights, map, gains, offset
+// and tip, all fitted at once.
+//   bench_posterior MODEL.json --fits 200 [SEED]   simulation-based calibration
+//   bench_posterior MODEL.json --fits-from-truth 200 [SEED]   the same, but the last scale of each
+//                                              fit begins at the truth, not where the first ended
+//   bench_posterior MODEL.json --sampler [SEED]    against a sampler, on a small case
+//
+// The generator. An SEM image of 64 x 48 pixels of 10 nm shows a plateau (sides 100 to 180 nm), a
+// line (60 to 160 nm wide) that crosses it, and what reaches into it of up to six mesas (sides 40
+// to 120 nm) on the ground around. Each is 15 to 60 nm high, turned a little, and its walls are
+// normal distribution functions with a deviation of 8 to 25 nm: slopes of 13 to 71 degrees at their
+// steepest. All stand on a sum of eight waves 150 to 500 nm long, 1.2 nm rms in all. The ground is
+// 440 nm wider than the image on every side, and the scan 200 nm, so that all of the scan is made
+// of known ground, and the image's border is that of an image of a larger specimen.
+// The scan has pixels of 10 nm. The given tip is a cone of half angle 20 degrees that ends in a
+// sphere of 20 nm; the true one is that tip with a change drawn from the fit's prior, 35 numbers of
+// N(0, 1/9). The dilation is computed as in the fit, with three samples per pixel. Its noise is
+// AR(1), alpha 0.825, innovation 0.201 nm^2.
+// The true map is the given one, a rotation of up to 0.2, but for normal errors of 0.004 in
+// rotation, 0.006 in both pixel sizes and the shear, and 4 nm in both shifts. The image is the
+// model's, 900 SE + 300 of each other channel, times a factor of deviation 0.05, plus an offset
+// of 120 with deviation 20. A discrepancy is drawn from `usual_discrepancy` of this image at 5 %;
+// the fit uses the one of the image with its noise. Noise is normal with variance 6 (image - 120).
+// The fit begins at the given tip, map, gains and offset. Heights are not drawn from the prior of
+// the fit, which has no scale that a scene could be drawn from: whether its deviations hold on such
+// scenes is the question.
+#include <fmt/format.h>
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "compare_truth.h"
+#include "posterior/sampler.h"
+#include "posterior/scalars.h"
+#include "posterior/scaled_errors.h"
+#include "reconstruction/gaussian_basis.h"
+#include "reconstruction/posterior.h"
+#include "surf/core/parallel.h"
+#include "surf/io/model/model_file.h"
+
+namespace {
+
+using namespace surf;
+using namespace surf::bench;
+using namespace surf::reconstruction;
+
+struct Errors {
+  std::vector<std::pair<std::string, std::vector<OneError>>> of;
+  void add(const std::string& quantity, double off, double deviation) {
+    of.emplace_back(quantity, std::vector{OneError{off, deviation}});
+  }
+  bool converged = true;
+  double tip_ratio = 0;  // deviations of the tip by draws over those by solutions, root mean square
+};
+
+const char* const map_names[map_numbers] = {"rotation", "pixel size x", "pixel size y",
+                                            "shear",    "shift x",      "shift y"};
+
+/// The variances that `reconstruct` adds for the places of walls, which only a model of the image
+/// that is off needs.
+Grid<double> variances_by_walls(const Fitted& f) {
+  const Grid<double> soft = f.inner(GaussianBasis(1, 1).sum(f.at.z_nm));
+  Grid<double> out(soft.width(), soft.height());
+  for (int y = 1; y + 1 < out.height(); ++y)
+    for (int x = 1; x + 1 < out.width(); ++x)
+      out(x, y) = 0.25 * 0.15 * 0.15 *
+                  (std::pow(soft(x + 1, y) - soft(x - 1, y), 2) +
+                   std::pow(soft(x, y + 1) - soft(x, y - 1), 2));
+  return out;
+}
+
+void add_heights(const DrawnScene& scene, const Fitted& f, Errors& errors) {
+  const Grid<double> walls = variances_by_walls(f);
+  for (const workflow::PixelRegion& region :
+       workflow::pixel_regions(scene.truth, f.result.data_support)) {
+    std::vector<OneError> stated, bare;
+    for (std::size_t i = 0; i < walls.size(); ++i) {
+      if (!region.pixels.data()[i]) continue;
+      const double off = f.result.surface.z_nm.data()[i] - scene.truth.z_nm.data()[i];
+      const double deviation = f.result.deviation_nm.data()[i];
+      stated.push_back({off, deviation});
+      bare.push_back({off, std::sqrt(deviation * deviation - walls.data()[i])});
+    }
+    errors.of.emplace_back(fmt::format("heights, {}", region.name), stated);
+    errors.of.emplace_back(fmt::format("heights, {}, no walls' places", region.name), bare);
+  }
+}
+
+void add_map_and_gains(const DrawnScene& scene, const Fitted& f, Errors& errors) {
+  const UnknownDeviations& d = f.result.unknown_deviations;
+  const auto numbers = [](const AffineParts& p) {
+    return MapChange{p.rotation_rad, p.scale_x, p.scale_y, p.shear, p.shift_x_nm, p.shift_y_nm};
+  };
+  // The middle of the image is at 0, so that its shift is that of the map.
+  const MapChange is = numbers(parts_of(f.result.sem_to_afm)),
+                  should = numbers(parts_of(scene.true_map)), deviation = numbers(d.sem_to_afm);
+  for (std::size_t k = 0; k < map_numbers; ++k)
+    errors.add(map_names[k], is[k] - should[k], deviation[k]);
+  errors.add("gain", std::log(f.result.gains[0] / scene.sem.gains[0] / scene.true_gain_factor),
+             d.gain_factor);
+  errors.add("offset", f.result.offset - scene.true_offset, d.offset);
+}
+
+/// What needs deviations of other functions of the unknowns.
+void add_functions(const DrawnScene& scene, const Fitted& f, std::uint64_t seed, Errors& errors) {
+  const Curvature a =
+      expected_curvature(f.objective, f.at, seed, 1, Precision::single_where_it_holds, {});
+  std::vector<Step> functions;
+  for (std::size_t k = 0; k < tip_numbers; ++k) {
+    functions.push_back(f.objective.zero());
+    functions.back().tip[k] = 1;
+  }
+  functions.push_back(f.objective.zero());
+  functions.back().tip = apex_radius_by_tip();
+  std::vector<std::pair<std::string, double>> off;
+  const auto add_scalar = [&](const char* name, const Scalar& is, double should) {
+    off.emplace_back(name, is.value - should);
+    functions.push_back(f.objective.zero());
+    for (int y = 0; y < is.by_height.height(); ++y)
+      for (int x = 0; x < is.by_height.width(); ++x)
+        functions.back().z_nm(x + f.margin_px, y + f.margin_px) = is.by_height(x, y);
+  };
+  add_scalar("mean height of the plateau", plateau_height(f.result.surface, scene.plateau),
+             plateau_height(scene.truth, scene.plateau).value);
+  const auto is = line_width(f.result.surface, scene.line),
+             should = line_width(scene.truth, scene.line);
+  if (is && should) add_scalar("width of the line", *is, should->value);
+  const std::vector<double> d = deviations_of(f.objective, f.at, a, functions, {});
+  double ratio = 0;
+  for (std::size_t k = 0; k < tip_numbers; ++k) {
+    const double error = f.at.tip[k] - scene.true_tip[k];
+    const double by_draws = f.result.unknown_deviations.tip_change[k];
+    errors.add(fmt::format("tip, place {}", k / tip_waves + 1), error, d[k]);
+    errors.add("tip, all", error, d[k]);
+    errors.add("tip, all, by draws", error, by_draws);
+    ratio += by_draws * by_draws / (d[k] * d[k]) / tip_numbers;
+  }
+  errors.tip_ratio = std::sqrt(ratio);
+  errors.add("tip, radius of the apex", apex_radius(f.at.tip) - apex_radius(scene.true_tip),
+             d[tip_numbers]);
+  for (std::size_t k = 0; k < off.size(); ++k)
+    errors.add(off[k].first, off[k].second, d[tip_numbers + 1 + k]);
+}
+
+int calibrate(const std::shared_ptr<const ImageModel>& model, int fits, std::uint64_t first,
+              bool from_truth) {
+  const auto begin = std::chrono::steady_clock::now();
+  std::vector<Errors> found(static_cast<std::size_t>(fits));
+  parallel_for(found.size(), 0, [&](std::size_t i, int) {
+    const DrawnScene scene = draw_scene(model, first + i);
+    const Fitted f = fit_scene(scene, from_truth ? Start::truth : Start::given, true);
+    found[i].converged = f.result.converged;
+    add_heights(scene, f, found[i]);
+    add_map_and_gains(scene, f, found[i]);
+    add_functions(scene, f, first + i, found[i]);
+    if (i % 10 == 9) fmt::print(stderr, "{} fits\n", i + 1);
+  });
+  ScaledErrors all;
+  int ended = 0;
+  double tip_ratio = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    ended += found[i].converged;
+    tip_ratio += found[i].tip_ratio / fits;
+    for (const auto& [quantity, errors] : found[i].of)
+      all.add(quantity, static_cast<int>(i), errors);
+  }
+  fmt::print(
+      "{} fits, seeds {} to {}, {:.1f} minutes; {} converged\n\n"
+      "Errors over posterior deviations. Expected: 68.3 % within one, 95.4 % within two, mean 0,\n"
+      "root mean square 1. Sampling errors are of the scatter of fits. Last: root mean squares of\n"
+      "errors and of deviations, in nm, radians, parts of 1 or grey levels.\n"
+      "  {:32} {:>13}   {:>13}   {:>14}   {:>13}   {:>8} {:>8}\n",
+      fits, first, first + found.size() - 1,
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() / 60, ended,
+      "", "within one, %", "within two, %", "mean", "rms", "error", "stated");
+  for (const char* const also : {"", ", no walls' places"})
+    for (const char* const region : {"all", "flat", "wall", "foot", "untouched"})
+      all.print_coverage(fmt::format("heights, {}{}", region, also));
+  std::vector<std::string> few(std::begin(map_names), std::end(map_names));
+  few.insert(few.end(), {"gain", "offset", "tip, all", "tip, all, by draws"});
+  for (int place = 1; place <= tip_places; ++place)
+    few.push_back(fmt::format("tip, place {}", place));
+  const std::array scalars{"mean height of the plateau", "width of the line",
+                           "tip, radius of the apex", "gain"};
+  few.insert(few.end(), scalars.begin(), scalars.end() - 1);
+  for (const std::string& name : few) all.print_coverage(name);
+  fmt::print(
+      "\nFits whose truth is in each tenth of the posterior; expected: {} in each, chi-squared 9,\n"
+      "p above 0.01\n",
+      fits / 10);
+  for (const char* const name : scalars) all.print_places(name);
+  for (const char* const name : map_names) all.print_places(name);
+  fmt::print("\nDeviations of the tip's numbers by draws are {:.2f} of those by solutions, rms\n",
+             tip_ratio);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string command = argc > 2 ? argv[2] : "";
+  if ((command == "--fits" || command == "--fits-from-truth") && argc > 3)
+    return calibrate(make_model(io::read_model(argv[1])), std::stoi(argv[3]),
+                     argc > 4 ? std::stoull(argv[4]) : 1, command == "--fits-from-truth");
+  if (command == "--sampler")
+    return compare_with_sampler(make_model(io::read_model(argv[1])),
+                                argc > 3 ? std::stoull(argv[3]) : 1);
+  fmt::print(stderr,
+             "bench_posterior MODEL.json --fits|--fits-from-truth FITS [SEED]\n"
+             "bench_posterior MODEL.json --sampler [SEED]\n");
+  return 2;
+}
