@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hamiltonian.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -44,6 +46,7 @@ Chain hamiltonian(const Energy& energy, int unknowns,
   Chain chain;
   chain.draws.resize(record(at).size(), o.draws);
   for (int i = 0; i < o.warm_up + o.draws; ++i) {
+    if (i % 50 == 0) fmt::print(stderr, "chain {}, draw {}\n", o.chain, i);
     const bool warming = i < o.warm_up;
     const double step = (warming ? size.now() : size.settled());
     const double length = o.length * (0.7 + 0.6 * random.uniform());

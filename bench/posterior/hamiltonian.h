@@ -11,7 +11,7 @@ namespace surf::bench {
 /// A Hamiltonian Monte Carlo sampler (Neal 2011, arXiv:1206.1901) for a density whose coordinates
 /// have been whitened, so that all have about unit variance.
 struct HamiltonianOptions {
-  int warm_up = 300, draws = 1000;
+  int warm_up = 200, draws = 600;
   double length = 1.5;      ///< of a trajectory; each is this times 0.7 to 1.3
   int most_steps = 40;      ///< per trajectory
   double acceptance = 0.8;  ///< that the step is adapted to while warming up

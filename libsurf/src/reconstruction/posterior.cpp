@@ -104,13 +104,22 @@ Curvature expected_curvature(const Objective& o, const Unknowns& at, std::uint64
   return a;
 }
 
+Step prior_bias(const Objective& o, const Unknowns& at, const Curvature& a, const Watch& watch) {
+  const auto product = [&](const Step& v) { return o.product(at, a.state, v, &a.near); };
+  Step pull = o.zero();
+  o.prior.evaluate(at.z_nm, &pull.z_nm, nullptr);
+  return solve(o, product, *a.preconditioner, pull, 0.05, watch);
+}
+
 std::vector<double> deviations_of(const Objective& o, const Unknowns& at, const Curvature& a,
-                                  const std::vector<Step>& functions, const Watch& watch) {
+                                  const Step& bias, const std::vector<Step>& functions,
+                                  const Watch& watch) {
   const auto product = [&](const Step& v) { return o.product(at, a.state, v, &a.near); };
   std::vector<double> out;
-  for (const Step& f : functions)
-    out.push_back(
-        std::sqrt(std::max(0.0, dot(f, solve(o, product, *a.preconditioner, f, 0.05, watch)))));
+  for (const Step& f : functions) {
+    const double variance = dot(f, solve(o, product, *a.preconditioner, f, 0.05, watch));
+    out.push_back(std::hypot(std::sqrt(std::max(variance, 0.0)), dot(f, bias)));
+  }
   return out;
 }
 
@@ -139,21 +148,23 @@ std::vector<Step> map_functions(const Objective& o, const Unknowns& at) {
 namespace {
 
 UnknownDeviations few_deviations(const Objective& o, const Unknowns& at, const Curvature& a,
-                                 const TipChange& tip_squares, const Watch& watch) {
+                                 const Step& bias, const TipChange& tip_squares,
+                                 const Watch& watch) {
   UnknownDeviations out;
   if (o.fit_map) {
-    const std::vector<double> d = deviations_of(o, at, a, map_functions(o, at), watch);
+    const std::vector<double> d = deviations_of(o, at, a, bias, map_functions(o, at), watch);
     out.sem_to_afm = {d[0], d[1], d[2], d[3], d[4], d[5]};
   }
   if (o.fit_mixture) {
     std::vector<Step> functions(2, o.zero());
     functions[0].mixture[0] = functions[1].mixture[1] = 1;
-    const std::vector<double> d = deviations_of(o, at, a, functions, watch);
+    const std::vector<double> d = deviations_of(o, at, a, bias, functions, watch);
     out.gain_factor = d[0];
     out.offset = d[1];
   }
   if (o.fit_tip)
-    for (const double square : tip_squares) out.tip_change.push_back(std::sqrt(square));
+    for (std::size_t k = 0; k < tip_numbers; ++k)
+      out.tip_change.push_back(std::hypot(std::sqrt(tip_squares[k]), bias.tip[k]));
   return out;
 }
 
@@ -179,16 +190,13 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
   }
   const GaussianBasis around(around_px, threads);
   const Grid<double> mean = around.sum(drawn), expected = around.sum(without_sem);
-  // The prior's bias, which draws of noise do not contain: the displacement of the surface if the
-  // prior were removed, to first order.
-  Step pull = o.zero();
-  o.prior.evaluate(at.z_nm, &pull.z_nm, nullptr);
-  Grid<double> bias = solve(o, product, m, pull, 0.05, watch).z_nm;
+  const Step whole_bias = prior_bias(o, at, a, watch);
+  Grid<double> bias = whole_bias.z_nm;
   for (double& b : bias.data()) b *= b;
   bias = around.sum(bias);
   Posterior out{Grid<double>(o.frame.width, o.frame.height),
                 Grid<unsigned char>(o.frame.width, o.frame.height),
-                few_deviations(o, at, a, tip_squares, watch)};
+                few_deviations(o, at, a, whole_bias, tip_squares, watch)};
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     const double ratio = mean.data()[i] / expected.data()[i];
     out.deviation_nm.data()[i] = std::sqrt(without_sem.data()[i] * ratio + bias.data()[i]);

@@ -29,11 +29,17 @@ struct Curvature {
 Curvature expected_curvature(const Objective& objective, const Unknowns& at, std::uint64_t seed,
                              int threads, Precision precision, const Watch& watch);
 
+/// The prior's bias, which draws of noise do not contain: the displacement of the unknowns if the
+/// prior of the surface were removed, to first order.
+Step prior_bias(const Objective& objective, const Unknowns& at, const Curvature& curvature,
+                const Watch& watch);
+
 /// The posterior standard deviation of each linear function of the unknowns, which is given by its
-/// derivatives. It is the root of c.A^-1 c, and costs a solution of the linear system.
+/// derivatives c. Its square is c.A^-1 c, which costs a solution of the linear system, and the
+/// square of c.bias.
 std::vector<double> deviations_of(const Objective& objective, const Unknowns& at,
-                                  const Curvature& curvature, const std::vector<Step>& functions,
-                                  const Watch& watch);
+                                  const Curvature& curvature, const Step& bias,
+                                  const std::vector<Step>& functions, const Watch& watch);
 
 /// The derivatives of the map's parts, in the order of AffineParts; the shift is that of the middle
 /// of the surface.

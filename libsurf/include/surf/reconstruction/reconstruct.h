@@ -179,8 +179,8 @@ class ReconstructionJournal {
 };
 
 /// Posterior standard deviations of the unknowns other than heights, linearised like those of the
-/// heights. Without the tilt and the displacement of walls that are added to the heights'. 0: not
-/// fitted.
+/// heights and with the bias by the prior, but without the tilt and the displacement of walls that
+/// are added to heights. 0: not fitted.
 struct UnknownDeviations {
   /// Of each part of the map from SEM to AFM; the shift is that of the SEM image's middle.
   AffineParts sem_to_afm{0, 0, 0, 0, 0, 0};
