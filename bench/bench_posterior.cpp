@@ -63,7 +63,7 @@ struct Errors {
   double tip_ratio = 0;  // deviations of the tip by draws over those by solutions, root mean square
 };
 
-const char* const map_names[map_numbers] = {"rotation", "pixel size x", "pixel size y",
+const char* const map_names[affine_numbers] = {"rotation", "pixel size x", "pixel size y",
                                             "shear",    "shift x",      "shift y"};
 
 /// The variances that `reconstruct` adds for the places of walls, which only a model of the image
@@ -105,7 +105,7 @@ void add_map_and_gains(const DrawnScene& scene, const Fitted& f, const Step& bia
   const MapChange is = numbers(parts_of(f.result.sem_to_afm)),
                   should = numbers(parts_of(scene.true_map)), deviation = numbers(d.sem_to_afm);
   const std::vector<Step> by_map = map_functions(f.objective, f.at);
-  for (std::size_t k = 0; k < map_numbers; ++k)
+  for (std::size_t k = 0; k < affine_numbers; ++k)
     errors.add(map_names[k], is[k] - should[k], deviation[k], dot(by_map[k], bias));
   errors.add("gain", std::log(f.result.gains[0] / scene.sem.gains[0] / scene.true_gain_factor),
              d.gain_factor, bias.mixture[0]);

@@ -146,13 +146,12 @@ ReconstructionState state_of_truth(const DrawnScene& scene) {
   const SurfaceFrame frame =
       frame_around(truth.z_nm.width(), truth.z_nm.height(), reconstruction_margin_px);
   const int left = ground_px - reconstruction_margin_px;
-  ReconstructionState s{
-      frame.field(cut_out(scene.ground.z_nm, left, left, frame.width, frame.height)),
-      scene.true_map,
-      scene.sem.gains,
-      scene.true_offset,
-      {ScaleReport()},
-      {}};
+  ReconstructionState s;
+  s.surface = frame.field(cut_out(scene.ground.z_nm, left, left, frame.width, frame.height));
+  s.sem_to_afm = scene.true_map;
+  s.gains = scene.sem.gains;
+  s.offset = scene.true_offset;
+  s.scales = {ScaleReport()};
   for (double& g : s.gains) g *= scene.true_gain_factor;
   s.scales.front().curvature_prior_per_nm = 1e-3;
   s.tip_change.assign(scene.true_tip.begin(), scene.true_tip.end());
@@ -225,20 +224,15 @@ Fitted fit_scene(const DrawnScene& scene, Start start, bool uncertainty, int mar
   const ReconstructionState& last = journal.last;
   const int had = (last.surface.z_nm.width() - scene.truth.z_nm.width()) / 2;
   const int margin = margin_px < 0 ? had : margin_px;
-  Objective o{{},
-              {},
-              CurvaturePrior(pitch_nm, last.scales.back().curvature_prior_per_nm),
-              frame_of(&scene.afm, &scene.sem, margin),
-              true,
-              true,
-              0,
-              {}};
+  Objective o{.prior = CurvaturePrior(pitch_nm, last.scales.back().curvature_prior_per_nm),
+              .frame = frame_of(&scene.afm, &scene.sem, margin)};
+  o.fit_map = o.fit_mixture = true;
   o.afm.emplace(scene.afm, eroded(scene.afm, 1), o.frame, scene.sem.sem_to_afm, 1);
   o.sem.emplace(scene.sem, o.frame, margin, margin, 1);
   o.fit_tip = true;
   Unknowns at{cut_out(last.surface.z_nm, had - margin, had - margin, o.frame.width, o.frame.height),
-              last.sem_to_afm, last.gains};
-  at.mixture.push_back(last.offset);
+              last.sem_to_afm,
+              {last.gains, last.offset}};
   std::copy_n(last.tip_change.begin(), tip_numbers, at.tip.begin());
   AfmData now = scene.afm;
   now.tip = o.afm->tip(at.tip);

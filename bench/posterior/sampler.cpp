@@ -24,15 +24,15 @@ using namespace reconstruction;
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
-constexpr int few = map_numbers + 2 + tip_numbers;
+constexpr int few = affine_numbers + 2 + tip_numbers;
 constexpr int chains = 4, margin_px = 6;
 
 Vector vector_of(const Step& s) {
   const auto heights = static_cast<Eigen::Index>(s.z_nm.size());
   Vector v(heights + few);
   v.head(heights) = Eigen::Map<const Vector>(s.z_nm.data().data(), heights);
-  v.segment(heights, map_numbers) = Eigen::Map<const Vector>(s.map.data(), map_numbers);
-  v.segment(heights + map_numbers, 2) = Eigen::Map<const Vector>(s.mixture.data(), 2);
+  v.segment(heights, affine_numbers) = Eigen::Map<const Vector>(s.map.data(), affine_numbers);
+  v.segment(heights + affine_numbers, 2) = Eigen::Map<const Vector>(s.mixture.data(), 2);
   v.tail(tip_numbers) = Eigen::Map<const Vector>(s.tip.data(), tip_numbers);
   return v;
 }
@@ -42,9 +42,9 @@ Step step_of(const Objective& o, const Vector& v) {
   const double* from = v.data();
   std::copy_n(from, s.z_nm.size(), s.z_nm.data().begin());
   from += s.z_nm.size();
-  std::copy_n(from, map_numbers, s.map.begin());
-  std::copy_n(from + map_numbers, 2, s.mixture.begin());
-  std::copy_n(from + map_numbers + 2, tip_numbers, s.tip.begin());
+  std::copy_n(from, affine_numbers, s.map.begin());
+  std::copy_n(from + affine_numbers, 2, s.mixture.begin());
+  std::copy_n(from + affine_numbers + 2, tip_numbers, s.tip.begin());
   return s;
 }
 
@@ -269,10 +269,10 @@ void print_comparison(const DrawnScene& scene, const Fitted& f, const Posterior&
     }
     print_line(name, compare, stated);
   };
-  print_few("map", 0, map_numbers);
-  print_few("gain", map_numbers, 1);
-  print_few("offset", map_numbers + 1, 1);
-  print_few("tip", map_numbers + 2, tip_numbers);
+  print_few("map", 0, affine_numbers);
+  print_few("gain", affine_numbers, 1);
+  print_few("offset", affine_numbers + 1, 1);
+  print_few("tip", affine_numbers + 2, tip_numbers);
 }
 
 }  // namespace

@@ -135,11 +135,11 @@ std::vector<Step> map_functions(const Objective& o, const Unknowns& at) {
     const Point2 there = map(middle);
     return MapChange{p.rotation_rad, p.scale_x, p.scale_y, p.shear, there.x, there.y};
   };
-  std::vector<Step> out(map_numbers, o.zero());
+  std::vector<Step> out(affine_numbers, o.zero());
   constexpr double samples = 1e-4;
-  for (int k = 0; k < map_numbers; ++k) {
+  for (int k = 0; k < affine_numbers; ++k) {
     const MapChange up = parts(k, samples), down = parts(k, -samples);
-    for (std::size_t i = 0; i < map_numbers; ++i)
+    for (std::size_t i = 0; i < affine_numbers; ++i)
       out[i].map[static_cast<std::size_t>(k)] = (up[i] - down[i]) / (2 * samples);
   }
   return out;
