@@ -64,7 +64,7 @@ struct Errors {
 };
 
 const char* const map_names[affine_numbers] = {"rotation", "pixel size x", "pixel size y",
-                                            "shear",    "shift x",      "shift y"};
+                                               "shear",    "shift x",      "shift y"};
 
 /// The variances that `reconstruct` adds for the places of walls, which only a model of the image
 /// that is off needs.
