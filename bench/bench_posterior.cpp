@@ -59,12 +59,11 @@ struct Errors {
                     std::vector{OneError{off, std::sqrt(deviation * deviation - bias * bias)}});
   }
   bool converged = true;
-  double above = 0;  // of the objective's end above that of a fit that begins at the truth, nats
-  double tip_ratio = 0;  // deviations of the tip by draws over those by solutions, root mean square
+  std::array<std::vector<double>, 3> draw_ratio;  // logarithms, of map, gain and offset, tip
 };
 
-const char* const map_names[affine_numbers] = {"rotation", "pixel size x", "pixel size y",
-                                               "shear",    "shift x",      "shift y"};
+const char* const map_names[map_numbers] = {"rotation", "pixel size x", "pixel size y",
+                                            "shear",    "shift x",      "shift y"};
 
 /// The variances that `reconstruct` adds for the places of walls, which only a model of the image
 /// that is off needs.
@@ -96,73 +95,68 @@ void add_heights(const DrawnScene& scene, const Fitted& f, Errors& errors) {
   }
 }
 
-void add_map_and_gains(const DrawnScene& scene, const Fitted& f, const Step& bias, Errors& errors) {
-  const UnknownDeviations& d = f.result.unknown_deviations;
-  const auto numbers = [](const AffineParts& p) {
-    return MapChange{p.rotation_rad, p.scale_x, p.scale_y, p.shear, p.shift_x_nm, p.shift_y_nm};
-  };
-  // The middle of the image is at 0, so that its shift is that of the map.
-  const MapChange is = numbers(parts_of(f.result.sem_to_afm)),
-                  should = numbers(parts_of(scene.true_map)), deviation = numbers(d.sem_to_afm);
-  const std::vector<Step> by_map = map_functions(f.objective, f.at);
-  for (std::size_t k = 0; k < affine_numbers; ++k)
-    errors.add(map_names[k], is[k] - should[k], deviation[k], dot(by_map[k], bias));
-  errors.add("gain", std::log(f.result.gains[0] / scene.sem.gains[0] / scene.true_gain_factor),
-             d.gain_factor, bias.mixture[0]);
-  errors.add("offset", f.result.offset - scene.true_offset, d.offset, bias.mixture[1]);
+MapChange numbers_of(const AffineParts& p) {
+  return {p.rotation_rad, p.scale_x, p.scale_y, p.shear, p.shift_x_nm, p.shift_y_nm};
 }
 
-/// What needs deviations of other functions of the unknowns.
-void add_functions(const DrawnScene& scene, const Fitted& f, const Curvature& a, const Step& bias,
-                   Errors& errors) {
-  std::vector<Step> functions;
-  for (std::size_t k = 0; k < tip_numbers; ++k) {
-    functions.push_back(f.objective.zero());
-    functions.back().tip[k] = 1;
-  }
+/// Of map, gain, offset, tip and scalars, with deviations by solutions of the linear system.
+void add_functions(const DrawnScene& scene, const Fitted& f, Errors& errors) {
+  const Curvature a =
+      expected_curvature(f.objective, f.at, 1, 1, Precision::single_where_it_holds, {});
+  const Step bias = prior_bias(f.objective, f.at, a, {});
+  std::vector<Step> functions = few_functions(f.objective, f.at);
+  std::vector<std::pair<std::string, double>> off;
+  // The middle of the image is at 0, so that its shift is that of the map.
+  const MapChange is = numbers_of(parts_of(f.result.sem_to_afm)),
+                  should = numbers_of(parts_of(scene.true_map));
+  for (std::size_t k = 0; k < map_numbers; ++k) off.emplace_back(map_names[k], is[k] - should[k]);
+  off.emplace_back("gain",
+                   std::log(f.result.gains[0] / scene.sem.gains[0] / scene.true_gain_factor));
+  off.emplace_back("offset", f.result.offset - scene.true_offset);
+  for (std::size_t k = 0; k < tip_numbers; ++k)
+    off.emplace_back(fmt::format("tip, place {}", k / tip_waves + 1),
+                     f.at.tip[k] - scene.true_tip[k]);
+  const std::size_t few = off.size();
+  off.emplace_back("tip, radius of the apex", apex_radius(f.at.tip) - apex_radius(scene.true_tip));
   functions.push_back(f.objective.zero());
   functions.back().tip = apex_radius_by_tip();
-  std::vector<std::pair<std::string, double>> off;
-  const auto add_scalar = [&](const char* name, const Scalar& is, double should) {
-    off.emplace_back(name, is.value - should);
+  const auto add_scalar = [&](const char* name, const Scalar& found, double truth) {
+    off.emplace_back(name, found.value - truth);
     functions.push_back(f.objective.zero());
-    for (int y = 0; y < is.by_height.height(); ++y)
-      for (int x = 0; x < is.by_height.width(); ++x)
-        functions.back().z_nm(x + f.margin_px, y + f.margin_px) = is.by_height(x, y);
+    for (int y = 0; y < found.by_height.height(); ++y)
+      for (int x = 0; x < found.by_height.width(); ++x)
+        functions.back().z_nm(x + f.margin_px, y + f.margin_px) = found.by_height(x, y);
   };
   add_scalar("mean height of the plateau", plateau_height(f.result.surface, scene.plateau),
              plateau_height(scene.truth, scene.plateau).value);
-  const auto is = line_width(f.result.surface, scene.line),
-             should = line_width(scene.truth, scene.line);
-  if (is && should) add_scalar("width of the line", *is, should->value);
+  const auto width = line_width(f.result.surface, scene.line),
+             true_width = line_width(scene.truth, scene.line);
+  if (width && true_width) add_scalar("width of the line", *width, true_width->value);
   const std::vector<double> d = deviations_of(f.objective, f.at, a, bias, functions, {});
-  double ratio = 0;
-  for (std::size_t k = 0; k < tip_numbers; ++k) {
-    const double error = f.at.tip[k] - scene.true_tip[k];
-    const double by_draws = f.result.unknown_deviations.tip_change[k];
-    errors.add(fmt::format("tip, place {}", k / tip_waves + 1), error, d[k], bias.tip[k]);
-    errors.add("tip, all", error, d[k], bias.tip[k]);
-    errors.add("tip, all, by draws", error, by_draws);
-    ratio += by_draws * by_draws / (d[k] * d[k]) / tip_numbers;
+  for (std::size_t k = 0; k < off.size(); ++k) {
+    const double by_bias = dot(functions[k], bias);
+    errors.add(off[k].first, off[k].second, d[k], by_bias);
+    if (off[k].first.starts_with("tip, place"))
+      errors.add("tip, all", off[k].second, d[k], by_bias);
   }
-  errors.tip_ratio = std::sqrt(ratio);
-  errors.add("tip, radius of the apex", apex_radius(f.at.tip) - apex_radius(scene.true_tip),
-             d[tip_numbers], dot(functions[tip_numbers], bias));
-  for (std::size_t k = 0; k < off.size(); ++k)
-    errors.add(off[k].first, off[k].second, d[tip_numbers + 1 + k],
-               dot(functions[tip_numbers + 1 + k], bias));
+  // What `reconstruct` gives, by draws.
+  const UnknownDeviations& given = f.result.unknown_deviations;
+  std::vector<double> by_draws;
+  for (const double v : numbers_of(given.sem_to_afm)) by_draws.push_back(v);
+  by_draws.insert(by_draws.end(), {given.gain_factor, given.offset});
+  by_draws.insert(by_draws.end(), given.tip_change.begin(), given.tip_change.end());
+  for (std::size_t k = 0; k < few; ++k) {
+    const std::size_t kind = k < map_numbers ? 0 : k < map_numbers + 2 ? 1 : 2;
+    errors.draw_ratio[kind].push_back(std::log(by_draws[k] / d[k]));
+  }
 }
 
 /// The fit of a scene, and its errors.
 double fit_errors(const DrawnScene& scene, Start start, Errors& errors) {
   const Fitted f = fit_scene(scene, start, true);
-  const Curvature a =
-      expected_curvature(f.objective, f.at, 1, 1, Precision::single_where_it_holds, {});
-  const Step bias = prior_bias(f.objective, f.at, a, {});
   errors.converged = f.result.converged;
   add_heights(scene, f, errors);
-  add_map_and_gains(scene, f, bias, errors);
-  add_functions(scene, f, a, bias, errors);
+  add_functions(scene, f, errors);
   return f.objective.evaluate(f.at).value();
 }
 
@@ -170,10 +164,12 @@ void print_tables(const std::vector<Errors>& found) {
   const auto fits = static_cast<double>(found.size());
   ScaledErrors all;
   int ended = 0;
-  double tip_ratio = 0;
+  std::array<std::vector<double>, 3> draw_ratio;
   for (std::size_t i = 0; i < found.size(); ++i) {
     ended += found[i].converged;
-    tip_ratio += found[i].tip_ratio / fits;
+    for (std::size_t k = 0; k < draw_ratio.size(); ++k)
+      draw_ratio[k].insert(draw_ratio[k].end(), found[i].draw_ratio[k].begin(),
+                           found[i].draw_ratio[k].end());
     for (const auto& [quantity, errors] : found[i].of)
       all.add(quantity, static_cast<int>(i), errors);
   }
@@ -190,7 +186,6 @@ void print_tables(const std::vector<Errors>& found) {
                            "tip, radius of the apex", "gain"};
   few.insert(few.end(), scalars.begin(), scalars.end() - 1);
   for (const std::string& name : few) all.print_coverage(name);
-  all.print_coverage("tip, all, by draws");
   for (const std::string& name : few)
     if (!name.starts_with("tip, place")) all.print_coverage(name + no_bias);
   fmt::print(
@@ -200,9 +195,17 @@ void print_tables(const std::vector<Errors>& found) {
   for (const char* const name : scalars) all.print_places(name);
   for (const char* const name : map_names) all.print_places(name);
   fmt::print(
-      "\n  {} fits converged; deviations of the tip's numbers by draws are {:.2f} of those\n"
-      "  by solutions, rms\n\n",
-      ended, tip_ratio);
+      "\n  {} fits converged. Deviations by draws over those by solutions, mean and scatter of "
+      "logarithms:\n ",
+      ended);
+  const char* const kinds[] = {"map", "gain and offset", "tip"};
+  for (std::size_t k = 0; k < draw_ratio.size(); ++k) {
+    double mean = 0, squares = 0;
+    const auto n = static_cast<double>(draw_ratio[k].size());
+    for (const double r : draw_ratio[k]) mean += r / n;
+    for (const double r : draw_ratio[k]) squares += (r - mean) * (r - mean) / n;
+    fmt::print(" {} {:.2f} +- {:.2f}{}", kinds[k], mean, std::sqrt(squares), k < 2 ? "," : "\n\n");
+  }
 }
 
 int calibrate(const std::shared_ptr<const ImageModel>& model, int fits, std::uint64_t first) {

@@ -145,30 +145,14 @@ std::vector<Step> map_functions(const Objective& o, const Unknowns& at) {
   return out;
 }
 
-namespace {
-
-UnknownDeviations few_deviations(const Objective& o, const Unknowns& at, const Curvature& a,
-                                 const Step& bias, const TipChange& tip_squares,
-                                 const Watch& watch) {
-  UnknownDeviations out;
-  if (o.fit_map) {
-    const std::vector<double> d = deviations_of(o, at, a, bias, map_functions(o, at), watch);
-    out.sem_to_afm = {d[0], d[1], d[2], d[3], d[4], d[5]};
-  }
-  if (o.fit_mixture) {
-    std::vector<Step> functions(2, o.zero());
-    functions[0].mixture[0] = functions[1].mixture[1] = 1;
-    const std::vector<double> d = deviations_of(o, at, a, bias, functions, watch);
-    out.gain_factor = d[0];
-    out.offset = d[1];
-  }
-  if (o.fit_tip)
-    for (std::size_t k = 0; k < tip_numbers; ++k)
-      out.tip_change.push_back(std::hypot(std::sqrt(tip_squares[k]), bias.tip[k]));
+std::vector<Step> few_functions(const Objective& o, const Unknowns& at) {
+  std::vector<Step> out =
+      o.fit_map ? map_functions(o, at) : std::vector<Step>(map_numbers, o.zero());
+  out.resize(map_numbers + 2 + tip_numbers, o.zero());
+  for (std::size_t k = 0; k < 2; ++k) out[map_numbers + k].mixture[k] = 1;
+  for (std::size_t k = 0; k < tip_numbers; ++k) out[map_numbers + 2 + k].tip[k] = 1;
   return out;
 }
-
-}  // namespace
 
 Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint64_t seed,
                     int threads, Precision precision, const Watch& watch) {
@@ -178,7 +162,8 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
   const auto product = [&](const Step& v) { return o.product(at, state, v, &a.near); };
   const Grid<double> without_sem = GaussianBasis(0.8, threads).sum(a.height_nm2);
   Grid<double> drawn(o.frame.width, o.frame.height);
-  TipChange tip_squares{};
+  const std::vector<Step> few = few_functions(o, at);
+  std::vector<double> few_variances(few.size());
   for (int d = 0; d < draws; ++d) {
     watch.report(draws + d, 2 * draws);
     Step r = data_pull(o, at, state, &a.near, seed + static_cast<std::uint64_t>(d));
@@ -186,7 +171,8 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
     const Step x = solve(o, product, m, r, 0.05, watch);
     for (std::size_t i = 0; i < drawn.size(); ++i)
       drawn.data()[i] += x.z_nm.data()[i] * x.z_nm.data()[i] / draws;
-    for (std::size_t k = 0; k < tip_numbers; ++k) tip_squares[k] += x.tip[k] * x.tip[k] / draws;
+    for (std::size_t k = 0; k < few.size(); ++k)
+      few_variances[k] += std::pow(dot(few[k], x), 2) / draws;
   }
   const GaussianBasis around(around_px, threads);
   const Grid<double> mean = around.sum(drawn), expected = around.sum(without_sem);
@@ -196,7 +182,12 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
   bias = around.sum(bias);
   Posterior out{Grid<double>(o.frame.width, o.frame.height),
                 Grid<unsigned char>(o.frame.width, o.frame.height),
-                few_deviations(o, at, a, whole_bias, tip_squares, watch)};
+                {}};
+  std::vector<double> d;
+  for (std::size_t k = 0; k < few.size(); ++k)
+    d.push_back(std::hypot(std::sqrt(few_variances[k]), dot(few[k], whole_bias)));
+  out.unknowns = {{d[0], d[1], d[2], d[3], d[4], d[5]}, d[map_numbers], d[map_numbers + 1], {}};
+  if (o.fit_tip) out.unknowns.tip_change.assign(d.begin() + map_numbers + 2, d.end());
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     const double ratio = mean.data()[i] / expected.data()[i];
     out.deviation_nm.data()[i] = std::sqrt(without_sem.data()[i] * ratio + bias.data()[i]);

@@ -36,7 +36,8 @@ Step prior_bias(const Objective& objective, const Unknowns& at, const Curvature&
 
 /// The posterior standard deviation of each linear function of the unknowns, which is given by its
 /// derivatives c. Its square is c.A^-1 c, which costs a solution of the linear system, and the
-/// square of c.bias.
+/// square of c.bias. A solution takes several times as long as a draw: the map's part of the
+/// preconditioner knows nothing of the surface.
 std::vector<double> deviations_of(const Objective& objective, const Unknowns& at,
                                   const Curvature& curvature, const Step& bias,
                                   const std::vector<Step>& functions, const Watch& watch);
@@ -44,6 +45,10 @@ std::vector<double> deviations_of(const Objective& objective, const Unknowns& at
 /// The derivatives of the map's parts, in the order of AffineParts; the shift is that of the middle
 /// of the surface.
 std::vector<Step> map_functions(const Objective& objective, const Unknowns& at);
+
+/// Those of the map's parts, of the common factor of the gains, of the offset, and of the tip's
+/// numbers.
+std::vector<Step> few_functions(const Objective& objective, const Unknowns& at);
 
 /// The posterior standard deviations, linearised: the average over draws from N(0, A^-1). Each draw
 /// costs as much as a solution of the linear system, so there are few, and their estimate scatters

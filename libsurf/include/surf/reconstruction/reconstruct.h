@@ -180,15 +180,15 @@ class ReconstructionJournal {
 
 /// Posterior standard deviations of the unknowns other than heights, linearised like those of the
 /// heights and with the bias by the prior, but without the tilt and the displacement of walls that
-/// are added to heights. 0: not fitted.
+/// are added to heights. From as many draws as `probes`: six tell them to within 30 %. 0: not
+/// fitted.
 struct UnknownDeviations {
   /// Of each part of the map from SEM to AFM; the shift is that of the SEM image's middle.
   AffineParts sem_to_afm{0, 0, 0, 0, 0, 0};
   double gain_factor = 0;  ///< of the common factor of all gains, about 1
   double offset = 0;       ///< in the SEM image's unit
   /// Of each number of ReconstructionState::tip_change: natural logarithms of factors of the tip's
-  /// slope. From as many draws as `probes`, so that six draws tell them to within 30 %. Empty: not
-  /// fitted.
+  /// slope. Empty: not fitted.
   std::vector<double> tip_change;
 };
 
