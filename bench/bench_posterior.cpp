@@ -132,14 +132,14 @@ void add_functions(const DrawnScene& scene, const Fitted& f, Errors& errors) {
   const auto width = line_width(f.result.surface, scene.line),
              true_width = line_width(scene.truth, scene.line);
   if (width && true_width) add_scalar("width of the line", *width, true_width->value);
-  const std::vector<double> d = deviations_of(f.objective, f.at, a, bias, functions, {});
+  const std::vector<double> d = deviations_of(f.objective, f.at, a, bias, functions, 0.05, {});
   for (std::size_t k = 0; k < off.size(); ++k) {
     const double by_bias = dot(functions[k], bias);
     errors.add(off[k].first, off[k].second, d[k], by_bias);
     if (off[k].first.starts_with("tip, place"))
       errors.add("tip, all", off[k].second, d[k], by_bias);
   }
-  // What `reconstruct` gives, by draws.
+  // What `reconstruct` states.
   const UnknownDeviations& given = f.result.unknown_deviations;
   std::vector<double> by_draws;
   for (const double v : numbers_of(given.sem_to_afm)) by_draws.push_back(v);
@@ -195,7 +195,7 @@ void print_tables(const std::vector<Errors>& found) {
   for (const char* const name : scalars) all.print_places(name);
   for (const char* const name : map_names) all.print_places(name);
   fmt::print(
-      "\n  {} fits converged. Deviations by draws over those by solutions, mean and scatter of "
+      "\n  {} fits converged. Stated deviations over those by close solutions, mean and scatter of "
       "logarithms:\n ",
       ended);
   const char* const kinds[] = {"map", "gain and offset", "tip"};

@@ -113,11 +113,11 @@ Step prior_bias(const Objective& o, const Unknowns& at, const Curvature& a, cons
 
 std::vector<double> deviations_of(const Objective& o, const Unknowns& at, const Curvature& a,
                                   const Step& bias, const std::vector<Step>& functions,
-                                  const Watch& watch) {
+                                  double reduction, const Watch& watch) {
   const auto product = [&](const Step& v) { return o.product(at, a.state, v, &a.near); };
   std::vector<double> out;
   for (const Step& f : functions) {
-    const double variance = dot(f, solve(o, product, *a.preconditioner, f, 0.05, watch));
+    const double variance = dot(f, solve(o, product, *a.preconditioner, f, reduction, watch));
     out.push_back(std::hypot(std::sqrt(std::max(variance, 0.0)), dot(f, bias)));
   }
   return out;
@@ -186,6 +186,13 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
   std::vector<double> d;
   for (std::size_t k = 0; k < few.size(); ++k)
     d.push_back(std::hypot(std::sqrt(few_variances[k]), dot(few[k], whole_bias)));
+  // Draws end before the map has settled, which makes its deviations half of what they are: its
+  // part of the preconditioner knows nothing of the surface.
+  if (o.fit_map) {
+    const std::vector<double> map =
+        deviations_of(o, at, a, whole_bias, map_functions(o, at), 0.5, watch);
+    std::ranges::copy(map, d.begin());
+  }
   out.unknowns = {{d[0], d[1], d[2], d[3], d[4], d[5]}, d[map_numbers], d[map_numbers + 1], {}};
   if (o.fit_tip) out.unknowns.tip_change.assign(d.begin() + map_numbers + 2, d.end());
   for (std::size_t i = 0; i < drawn.size(); ++i) {

@@ -180,8 +180,8 @@ class ReconstructionJournal {
 
 /// Posterior standard deviations of the unknowns other than heights, linearised like those of the
 /// heights and with the bias by the prior, but without the tilt and the displacement of walls that
-/// are added to heights. From as many draws as `probes`: six tell them to within 30 %. 0: not
-/// fitted.
+/// are added to heights. All but those of the map are from as many draws as `probes`: six tell them
+/// to within 30 %. 0: not fitted.
 struct UnknownDeviations {
   /// Of each part of the map from SEM to AFM; the shift is that of the SEM image's middle.
   AffineParts sem_to_afm{0, 0, 0, 0, 0, 0};
