@@ -62,8 +62,8 @@ struct Errors {
   std::array<std::vector<double>, 3> draw_ratio;  // logarithms, of map, gain and offset, tip
 };
 
-const char* const map_names[map_numbers] = {"rotation", "pixel size x", "pixel size y",
-                                            "shear",    "shift x",      "shift y"};
+const char* const map_names[affine_numbers] = {"rotation", "pixel size x", "pixel size y",
+                                               "shear",    "shift x",      "shift y"};
 
 /// The variances that `reconstruct` adds for the places of walls, which only a model of the image
 /// that is off needs.
@@ -109,7 +109,8 @@ void add_functions(const DrawnScene& scene, const Fitted& f, Errors& errors) {
   // The middle of the image is at 0, so that its shift is that of the map.
   const MapChange is = numbers_of(parts_of(f.result.sem_to_afm)),
                   should = numbers_of(parts_of(scene.true_map));
-  for (std::size_t k = 0; k < map_numbers; ++k) off.emplace_back(map_names[k], is[k] - should[k]);
+  for (std::size_t k = 0; k < affine_numbers; ++k)
+    off.emplace_back(map_names[k], is[k] - should[k]);
   off.emplace_back("gain",
                    std::log(f.result.gains[0] / scene.sem.gains[0] / scene.true_gain_factor));
   off.emplace_back("offset", f.result.offset - scene.true_offset);
@@ -146,7 +147,7 @@ void add_functions(const DrawnScene& scene, const Fitted& f, Errors& errors) {
   by_draws.insert(by_draws.end(), {given.gain_factor, given.offset});
   by_draws.insert(by_draws.end(), given.tip_change.begin(), given.tip_change.end());
   for (std::size_t k = 0; k < few; ++k) {
-    const std::size_t kind = k < map_numbers ? 0 : k < map_numbers + 2 ? 1 : 2;
+    const std::size_t kind = k < affine_numbers ? 0 : k < affine_numbers + 2 ? 1 : 2;
     errors.draw_ratio[kind].push_back(std::log(by_draws[k] / d[k]));
   }
 }

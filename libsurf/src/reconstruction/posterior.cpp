@@ -147,10 +147,10 @@ std::vector<Step> map_functions(const Objective& o, const Unknowns& at) {
 
 std::vector<Step> few_functions(const Objective& o, const Unknowns& at) {
   std::vector<Step> out =
-      o.fit_map ? map_functions(o, at) : std::vector<Step>(map_numbers, o.zero());
-  out.resize(map_numbers + 2 + tip_numbers, o.zero());
-  for (std::size_t k = 0; k < 2; ++k) out[map_numbers + k].mixture[k] = 1;
-  for (std::size_t k = 0; k < tip_numbers; ++k) out[map_numbers + 2 + k].tip[k] = 1;
+      o.fit_map ? map_functions(o, at) : std::vector<Step>(affine_numbers, o.zero());
+  out.resize(affine_numbers + 2 + tip_numbers, o.zero());
+  for (std::size_t k = 0; k < 2; ++k) out[affine_numbers + k].mixture[k] = 1;
+  for (std::size_t k = 0; k < tip_numbers; ++k) out[affine_numbers + 2 + k].tip[k] = 1;
   return out;
 }
 
@@ -193,8 +193,9 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
         deviations_of(o, at, a, whole_bias, map_functions(o, at), 0.5, watch);
     std::ranges::copy(map, d.begin());
   }
-  out.unknowns = {{d[0], d[1], d[2], d[3], d[4], d[5]}, d[map_numbers], d[map_numbers + 1], {}};
-  if (o.fit_tip) out.unknowns.tip_change.assign(d.begin() + map_numbers + 2, d.end());
+  out.unknowns = {
+      {d[0], d[1], d[2], d[3], d[4], d[5]}, d[affine_numbers], d[affine_numbers + 1], {}};
+  if (o.fit_tip) out.unknowns.tip_change.assign(d.begin() + affine_numbers + 2, d.end());
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     const double ratio = mean.data()[i] / expected.data()[i];
     out.deviation_nm.data()[i] = std::sqrt(without_sem.data()[i] * ratio + bias.data()[i]);
