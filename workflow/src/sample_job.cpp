@@ -440,7 +440,7 @@ void describe(ParameterVisitor& visit, SampleJob& job) {
                       .help = "Standard deviation of the beam's spot",
                       .unit = Unit::nm,
                       .limits = within(0, 1000),
-                      .otherwise = "3nm, as the models of these scenes have it"});
+                      .otherwise = "that of the models of these scenes"});
   visit(job.detector, {.name = "sample.detector",
                        .help = "Detector of secondaries in place of one that sees all of them: "
                                "in-lens, side, or one of your own, as simulate reads it",

@@ -44,7 +44,8 @@ TEST(SpotBlur, APointGetsTheVarianceThatIsAsked) {
 TEST(SpotBlur, IsSymmetricAndKeepsAConstantAtTheBorder) {
   const Grid<double> a = random_image(1), b = random_image(2);
   EXPECT_NEAR(dot(blurred(a, 0.7), b), dot(a, blurred(b, 0.7)), 1e-10);
-  for (const double v : blurred(Grid<double>(9, 7, 3.0), 1.5).data()) EXPECT_NEAR(v, 3, 1e-12);
+  const Grid<double> constant = blurred(Grid<double>(9, 7, 3.0), 1.5);
+  for (const double v : constant.data()) EXPECT_NEAR(v, 3, 1e-12);
 }
 
 TEST(SpotBlur, ItsDerivativeIsThatOfDifferences) {

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What deviations of heights know besides the posterior's draws.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "reconstruction/common_doubts.h"
+#include "reconstruction/depth_doubt.h"
+#include "reconstruction/initial_surface.h"
+#include "small_scene.h"
+
+namespace surf {
+namespace {
+
+using namespace reconstruction;
+
+TEST(CommonDoubts, AnUncertainPlaceReachesPlateausAndNoLevelGround) {
+  HeightField surface;
+  surface.pitch_x_nm = surface.pitch_y_nm = 10;
+  surface.z_nm = Grid<double>(80, 40);
+  for (int y = 0; y < 40; ++y)
+    for (int x = 60; x < 80; ++x) surface.z_nm(x, y) = 50;
+  const auto added = [&](const CommonDoubts& doubts) {
+    Grid<double> deviation(80, 40, 1.0);
+    add(doubts, surface, surface.z_nm, Affine{}, deviation);
+    return deviation;
+  };
+  CommonDoubts place;
+  place.place_px = 4;
+  const Grid<double> off = added(place);
+  EXPECT_NEAR(off(20, 20), 1, 1e-9);  // ten deviations from the step
+  EXPECT_GT(off(57, 20), 15);         // within one
+  EXPECT_GT(off(63, 20), 15);
+  CommonDoubts edge;
+  edge.edge_px = 0.15;
+  EXPECT_EQ(added(edge)(57, 20), 1);
+  EXPECT_NEAR(added(edge)(60, 20), std::hypot(1, 0.15 * 25), 1e-9);
+  CommonDoubts tilt;
+  tilt.level = {0.01, 0};
+  tilt.middle = {400, 0};
+  EXPECT_NEAR(added(tilt)(70, 20), std::hypot(1, 3), 1e-9);
+  EXPECT_NEAR(added(tilt)(40, 20), 1, 1e-9);
+}
+
+/// Ground with a trench that the tip does not enter.
+double trench(Point2 p) { return -60 * std::exp(-std::pow(p.x / 25, 8)); }
+
+/// The doubt in the middle of the trench, and on level ground, for a surface that bridges it.
+std::pair<double, double> doubts_of(double gain) {
+  test::SmallScene scene(5, 64, 48, 0.5, trench);
+  scene.sem.gains = {gain};
+  Objective o{.prior = CurvaturePrior(10, 2e-3), .frame = frame_of(&scene.afm, &scene.sem, 4)};
+  o.afm.emplace(scene.afm, eroded(scene.afm, 1), o.frame, scene.sem.sem_to_afm, 1);
+  o.sem.emplace(scene.sem, o.frame, 4, 4, 1);
+  Unknowns at{Grid<double>(72, 56), scene.sem.sem_to_afm, {scene.sem.gains, scene.sem.offset}};
+  at.z_nm(2, 2) = -60;  // as low as anything is
+  for (int y = 0; y < 56; ++y)
+    for (int x = 0; x < 72; ++x)
+      if (std::abs(o.frame.origin_x_nm + 10 * x) < 40) at.z_nm(x, y) = -12;
+  const Grid<double> doubt = depth_doubt(o, at, o.evaluate(at), 1);
+  double touched = 0, n = 0;
+  for (int y = 10; y < 46; ++y)
+    for (int x = 50; x < 66; ++x) touched += doubt(x, y), n += 1;
+  return {doubt(36, 28), touched / n};
+}
+
+TEST(DepthDoubt, IsWhatNothingExcludesWhereTheTipDidNotReach) {
+  const auto [blind, ground] = doubts_of(1e-3);  // an image that says nothing
+  EXPECT_GT(blind, 12);
+  EXPECT_LT(ground, 2);
+  const auto [seen, same_ground] = doubts_of(100);
+  EXPECT_LT(seen, 0.7 * blind);
+  EXPECT_LT(same_ground, 2);
+}
+
+}  // namespace
+}  // namespace surf
