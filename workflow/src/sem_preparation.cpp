@@ -28,13 +28,30 @@ void tilt_scan(const SemTilt& by, const PlacedImage& sem, const Affine& map, Pre
   afm.level_doubt = by.doubt;
 }
 
-/// Levels the scan by the SEM image, too: `found` is what it has been tilted by so far.
-void level_by_sem(const HeightField& surface, const SemData& sem, const Affine& map,
+/// Levels the scan by the SEM image, too: `found` is what it has been tilted by so far. Where the
+/// image asks for more than the scan's plane can be off by, as one of a detector at the side does,
+/// the scan stays as it was levelled, and the answer is false.
+bool level_by_sem(const HeightField& surface, const SemData& sem, const Affine& map,
                   const SlopeDoubt& doubt, int threads, PreparedAfm& prepared, AfmData& afm,
-                  SemTilt& found) {
+                  SemTilt& found, const Reporter& told) {
+  constexpr double most_deviations = 4;
   const SemTilt more = tilt_by_sem(surface, sem, map, {-found.x, -found.y, doubt}, threads);
-  found = {found.x + more.x, found.y + more.y, more.doubt};
-  tilt_scan(more, sem.image, sem.sem_to_afm, prepared, afm);
+  const SemTilt all{found.x + more.x, found.y + more.y, more.doubt};
+  const double deviations = std::hypot(all.x / doubt.x, all.y / doubt.y);
+  if (deviations <= most_deviations) {
+    found = all;
+    tilt_scan(more, sem.image, sem.sem_to_afm, prepared, afm);
+    return true;
+  }
+  tilt_scan({-found.x, -found.y, doubt}, sem.image, sem.sem_to_afm, prepared, afm);
+  found = {0, 0, doubt};
+  told.warn(fmt::format(
+      "the SEM image asks for a scan that is tilted by {:.2f} deg, {:.0f} standard errors more "
+      "than "
+      "its plane is off by: the scan stays as it was levelled. A detector at one side makes such "
+      "images, and a model without sides does not explain them",
+      std::atan(std::hypot(all.x, all.y)) / degrees_to_radians, deviations));
+  return false;
 }
 
 }  // namespace
@@ -59,7 +76,7 @@ SemData prepare_sem(const ReconstructJob& job, ReconstructSummary& s, const Plac
                     AfmData* afm, const Reporter& told) {
   begin(told, "calibration");
   const SlopeDoubt level_doubt = afm ? afm->level_doubt : SlopeDoubt{};
-  const bool levels = afm && !job.tilt && level_doubt.x > 0 && level_doubt.y > 0;
+  bool levels = afm && !job.tilt && level_doubt.x > 0 && level_doubt.y > 0;
   constexpr int rounds = 2;
   const HeightField* eroded = s.afm ? &s.afm->eroded() : nullptr;
   const Affine map = s.pose ? s.pose->sem_to_afm : Affine{};
@@ -85,7 +102,8 @@ SemData prepare_sem(const ReconstructJob& job, ReconstructSummary& s, const Plac
     const SemData sem = data();
     const Reconstruction r = reconstruct(afm, &sem, coarse);
     if (levels)
-      level_by_sem(r.surface, sem, r.sem_to_afm, level_doubt, threads, *s.afm, *afm, s.tilt);
+      levels = level_by_sem(r.surface, sem, r.sem_to_afm, level_doubt, threads, *s.afm, *afm,
+                            s.tilt, told);
     if (!calibrate_again(image, r.surface, *s.model->model, job.calibration.has_value(),
                          job.sem_noise.has_value(), threads, first))
       break;
