@@ -10,7 +10,8 @@
 namespace surf::reconstruction {
 namespace {
 
-constexpr double touched_px = 2.5;  // contacts lie closer than this where the tip reached
+constexpr double touched_px = 3;    // contacts lie closer than this where the tip reached
+constexpr double least_gap_px = 2;  // a chance gap between contacts hides no depth
 constexpr int gap_px = 6;           // half of what counts as one narrow place
 constexpr double soft_px = 1;
 constexpr double around_px = 2;       // range over which the image may object
@@ -49,7 +50,7 @@ Grid<double> depth_within(const Grid<double>& distance) {
   };
   const Grid<double> most = widest(widest(beyond, true), false);
   for (std::size_t i = 0; i < out.size(); ++i)
-    out.data()[i] = most.data()[i] > 0 ? beyond.data()[i] / most.data()[i] : 0;
+    out.data()[i] = beyond.data()[i] / std::max(most.data()[i], least_gap_px);
   return out;
 }
 

@@ -43,12 +43,13 @@ TEST(CommonDoubts, AnUncertainPlaceReachesPlateausAndNoLevelGround) {
 }
 
 /// Ground with a trench that the tip does not enter.
-double trench(Point2 p) { return -60 * std::exp(-std::pow(p.x / 25, 8)); }
+double trench(Point2 p) { return -60 * std::exp(-std::pow(p.x / 70, 8)); }
 
 /// The doubt in the middle of the trench, and on level ground, for a surface that bridges it.
 std::pair<double, double> doubts_of(double gain) {
   test::SmallScene scene(5, 64, 48, 0.5, trench);
   scene.sem.gains = {gain};
+  scene.afm.tip = parabolic_tip(1000, {20, 20, 15, 15});  // so flat that it stays out
   Objective o{.prior = CurvaturePrior(10, 2e-3), .frame = frame_of(&scene.afm, &scene.sem, 4)};
   o.afm.emplace(scene.afm, eroded(scene.afm, 1), o.frame, scene.sem.sem_to_afm, 1);
   o.sem.emplace(scene.sem, o.frame, 4, 4, 1);
@@ -56,7 +57,7 @@ std::pair<double, double> doubts_of(double gain) {
   at.z_nm(2, 2) = -60;  // as low as anything is
   for (int y = 0; y < 56; ++y)
     for (int x = 0; x < 72; ++x)
-      if (std::abs(o.frame.origin_x_nm + 10 * x) < 40) at.z_nm(x, y) = -12;
+      if (std::abs(o.frame.origin_x_nm + 10 * x) < 80) at.z_nm(x, y) = -12;
   const Grid<double> doubt = depth_doubt(o, at, o.evaluate(at), 1);
   double touched = 0, n = 0;
   for (int y = 10; y < 46; ++y)
