@@ -73,6 +73,12 @@ class HillyPair : public testing::Test {
     return sem;
   }
 
+  StoredModel model() const {
+    ModelRequest request = job_.model;
+    request.pixel_nm = pitch;
+    return find_model(request, {});
+  }
+
   std::filesystem::path path(const char* name) const { return folder_.path() / name; }
   nlohmann::json report(const char* folder) const {
     return nlohmann::json::parse(io::read_file(path(folder) / "report.json"));

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "hilly_pair.h"
+#include "reconstruction_output.h"
 #include "surf/afm/morphology.h"
+#include "surf/io/transform_file.h"
 
 namespace surf::workflow {
 namespace {
@@ -17,9 +19,7 @@ class JudgePlaces : public HillyPair {
   JudgePlaces() {
     job_.tilt.reset();
     summary_.afm = prepare_afm(job_.afm->scan, job_.afm->preparation);
-    ModelRequest request = job_.model;
-    request.pixel_nm = pitch;
-    summary_.model = find_model(request, {});
+    summary_.model = model();
     afm_ = {summary_.afm->image, summary_.afm->tip, summary_.afm->noise, job_.upsample, {}};
   }
 
@@ -74,6 +74,16 @@ TEST_F(JudgePlaces, TwoSurfacesThatBothExplainTheImagesAreBothGiven) {
   ASSERT_TRUE(rival.has_value());
   EXPECT_GT(rival->share_apart, 0.3);
   EXPECT_GT(rival->probability, 0.05);
+
+  summary_.rival = rival;
+  std::filesystem::create_directories(job_.folder);
+  write_reconstruction(job_, summary_, &afm_, &sem);
+  const io::TransformFile map = io::read_transform(job_.folder / "rival_transform.json");
+  EXPECT_EQ(map.sem_to_afm, rival->found.sem_to_afm);
+  EXPECT_FALSE(map.verified);
+  EXPECT_NE(io::read_file(job_.folder / "rival.vti"), io::read_file(job_.folder / "surface.vti"));
+  EXPECT_EQ(report("result")["registration"]["judged_by_both_images"].size(), 2u);
+  EXPECT_GT(report("result")["registration"]["rival_surface"]["share_of_heights_apart"], 0.3);
 
   summary_.pose->places[1].sem_to_afm = summary_.pose->places[0].sem_to_afm;
   EXPECT_FALSE(rival_surface(job_, summary_, afm_, sem, {}).has_value());  // the same surface

@@ -12,9 +12,7 @@ class SearchPlaces : public HillyPair {
  protected:
   SearchPlaces() {
     afm_ = prepare_afm(job_.afm->scan, job_.afm->preparation);
-    ModelRequest request = job_.model;
-    request.pixel_nm = pitch;
-    model_ = find_model(request, {});
+    model_ = model();
     pose_.sem_to_afm = {1, 0, 110, 0, 1, 20};
     pose_.registration.emplace();
     pose_.registration->verdict = RegistrationVerdict::ambiguous;

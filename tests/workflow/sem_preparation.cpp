@@ -17,9 +17,7 @@ class PrepareSem : public HillyPair {
     job_.tilt.reset();
     summary_.afm = prepare_afm(job_.afm->scan, job_.afm->preparation);
     summary_.afm->level_doubt = {2e-3, 2e-3};
-    ModelRequest request = job_.model;
-    request.pixel_nm = pitch;
-    summary_.model = find_model(request, {});
+    summary_.model = model();
     summary_.pose.emplace();
     summary_.pose->sem_to_afm = shift;
     reporter_.on_warning = [this](const std::string& text) { warnings_.push_back(text); };

@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::int64_t least_pixels = 16;
 
-// Regions, as tangents of the slope.
-constexpr double flat_below = 0.1, wall_above = 0.577;
+// As a tangent of the slope, like wall_slope.
+constexpr double flat_below = 0.1;
 constexpr int around_px = 3;
 
 struct Differences {
@@ -130,9 +130,9 @@ std::vector<PixelRegion> pixel_regions(const HeightField& truth,
   for (const char* name : {"all", "flat", "wall", "foot", "untouched"})
     out.push_back({name, Mask(slope.width(), slope.height())});
   for (std::size_t i = 0; i < slope.size(); ++i) {
-    const bool wall = slope.data()[i] > wall_above;
+    const bool wall = slope.data()[i] > wall_slope;
     const bool in[] = {true, around.data()[i] < flat_below, wall,
-                       !wall && around.data()[i] > wall_above,
+                       !wall && around.data()[i] > wall_slope,
                        !data_support.empty() && (data_support.data()[i] & 1) == 0};
     for (std::size_t r = 0; r < out.size(); ++r) out[r].pixels.data()[i] = in[r];
   }

@@ -7,7 +7,6 @@
 namespace surf::workflow {
 namespace {
 
-constexpr double steep = 0.577;  // tangent of the slope
 constexpr double least_rise_nm = 10;
 constexpr int farthest_px = 6;
 
@@ -60,12 +59,13 @@ void judge(const Line& line, RegionReport& report) {
   const auto rise = [&](std::size_t i) { return line.truth_nm[i + 1] - line.truth_nm[i]; };
   const std::size_t steps = line.truth_nm.size() - 1;
   for (std::size_t i = 0; i < steps;) {
-    if (!(std::abs(rise(i)) > steep * line.pitch_nm)) {
+    if (!(std::abs(rise(i)) > wall_slope * line.pitch_nm)) {
       ++i;
       continue;
     }
     std::size_t end = i;
-    while (end < steps && std::abs(rise(end)) > steep * line.pitch_nm && rise(end) * rise(i) > 0)
+    while (end < steps && std::abs(rise(end)) > wall_slope * line.pitch_nm &&
+           rise(end) * rise(i) > 0)
       ++end;
     if (std::abs(line.truth_nm[end] - line.truth_nm[i]) >= least_rise_nm)
       judge_wall(line, i, end, report);

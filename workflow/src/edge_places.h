@@ -5,6 +5,8 @@
 
 namespace surf::workflow {
 
+inline constexpr double wall_slope = 0.577;  ///< ground as steep as this, 30 degrees, is a wall
+
 /// How well the lateral places of walls agree with the truth, in the middle of their height: for
 /// each wall of the truth that a row or a column crosses, the place where the surface passes that
 /// height, against a standard deviation of height over slope there. Walls rise by 10 nm or more,

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "chain_steps.h"
-#include "first_calibration.h"
 #include "sem_preparation.h"
 #include "surf/core/error.h"
 
@@ -30,8 +29,8 @@ double objective_of(const Reconstruction& r) {
   return last.afm + last.sem + last.prior;
 }
 
-/// By how much residuals that are larger than noise, or go together, make differences of
-/// likelihoods seem larger than they are.
+/// By how much residuals that are larger than noise make differences of likelihoods seem larger
+/// than they are.
 double excess(const Reconstruction& r) {
   const ScaleReport& last = r.scales.back();
   return std::max(
@@ -80,19 +79,15 @@ void fit(Candidate& c, const ReconstructJob& job, const ReconstructSummary& s,
          const PlacedImage& image, const AfmData& afm, const SemNoise& noise, bool closely,
          const Watch& watch) {
   constexpr double says_nothing = 1e12;  // of the noise's variance
-  SemData sem{image,
-              s.model->model,
-              c.calibration.gains,
-              c.calibration.offset,
-              noise,
-              c.map,
-              usual_discrepancy(image, job.model_error)};
+  SemData sem = sem_at(job, s, image, c.map, c.calibration);
+  sem.noise = noise;
   ReconstructionOptions o = coarse_options(job, s, c.calibration.tied);
   if (closely) o.scales_px.clear(), o.iterations = job.options.iterations;
   o.watch = watch.part(0, 0.6);
   c.found = reconstruct(&afm, &sem, o);
   sem.noise = {0, says_nothing * noise.variance(c.calibration.offset), 1e-3};
   sem.discrepancy.clear();
+  sem.row_jitter = {};
   o.refine_transform = o.refine_calibration = o.refine_tip = false;
   o.watch = watch.part(0.6, 1);
   c.value = objective_of(c.found) - objective_of(reconstruct(&afm, &sem, o));

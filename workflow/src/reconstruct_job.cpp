@@ -81,7 +81,7 @@ Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const S
     id["offset"] = format_exact(sem->offset);
     id["SEM noise"] = text_of({sem->noise.slope, sem->noise.intercept, sem->noise.least_variance});
     id["transform"] = map_text(sem->sem_to_afm);
-    if (!sem->shapes.of_rows.empty()) id["line jitter"] = hash_of(sem->shapes.of_rows.data());
+    if (!sem->row_jitter.empty()) id["line jitter"] = hash_of(sem->row_jitter.data());
     for (const SemDiscrepancy& part : sem->discrepancy)
       id["model error"] +=
           fmt::format("{} {:g} ", hash_of(part.deviation.data()), part.correlation_px);

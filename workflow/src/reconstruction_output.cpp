@@ -219,6 +219,7 @@ std::vector<fs::path> write_reconstruction(const ReconstructJob& job, const Reco
     io::write_image(file("rival.vti"), surface_image(s, s.rival->found, made));
     io::TransformFile transform;
     transform.sem_to_afm = s.rival->found.sem_to_afm;
+    transform.verified = false;
     transform.notes = made;
     transform.verdict = fmt::format("a rival with a probability of {:.2g}", s.rival->probability);
     io::write_transform(file("rival_transform.json"), transform);

@@ -332,13 +332,13 @@ std::string reconstruction_report(const ReconstructJob& job, const ReconstructSu
   json["surface"] = {{"pixels", {r.surface.z_nm.width(), r.surface.z_nm.height()}},
                      {"pitch_nm", {r.surface.pitch_x_nm, r.surface.pitch_y_nm}},
                      {"converged", r.converged}};
-  if (!r.sem_row_sizes.empty()) {
+  if (!r.sem_row_jitter.empty()) {
     double squares = 0;
-    for (const double size : r.sem_row_sizes) squares += size * size;
+    for (const double size : r.sem_row_jitter) squares += size * size;
     json["line_jitter"] = {
         {"allowed_px", job.line_jitter_px},
         {"found_px",
-         job.line_jitter_px * std::sqrt(squares / static_cast<double>(r.sem_row_sizes.size()))}};
+         job.line_jitter_px * std::sqrt(squares / static_cast<double>(r.sem_row_jitter.size()))}};
   }
   if (!r.sem_discrepancy.empty())
     json["discrepancy"] = {{"allowed_share", job.model_error},

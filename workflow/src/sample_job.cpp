@@ -18,6 +18,7 @@
 #include "surf/afm/tip_shapes.h"
 #include "surf/core/error.h"
 #include "surf/core/instruction_set.h"
+#include "surf/core/sample_image.h"
 #include "surf/core/units.h"
 #include "surf/io/files.h"
 #include "surf/io/height_field_file.h"
@@ -163,16 +164,10 @@ double depth_of(const SampleJob& job, const SampleScene& scene, const SampleSurf
 }
 
 /// A value between samples, or beyond them that of the border.
-double between(const Grid<double>& z, double x, double y) {
-  const auto cell = [](double at, int size) {
-    const double inside = std::clamp(at, 0.0, size - 1.0);
-    const int first = std::min(static_cast<int>(inside), size - 2);
-    return std::pair(first, inside - first);
-  };
-  const auto [i, u] = cell(x, z.width());
-  const auto [j, v] = cell(y, z.height());
-  return (1 - v) * ((1 - u) * z(i, j) + u * z(i + 1, j)) +
-         v * ((1 - u) * z(i, j + 1) + u * z(i + 1, j + 1));
+double between(const PlacedImage& image, double column, double row) {
+  const auto inside = [](double at, int size) { return std::clamp(at, 0.0, size - 1.0); };
+  return sample_image(image, image.place_nm(inside(column, image.values.width()),
+                                            inside(row, image.values.height())));
 }
 
 /// The scan of an ideal AFM. The surface extends beyond the scan as far as the tip does.
@@ -190,6 +185,8 @@ HeightField dilated(const SampleJob& job, const SampleScene& scene, const Sample
   options.threads = job.threads;
   options.watch = watch;
   const HeightField image = dilate(finer, tip, options);
+  PlacedImage ideal;
+  ideal.values = image.z_nm;
   HeightField scan = empty_field(frame.width, frame.height, scene.afm_pitch_nm, 0, 0);
   const double drift_nm = job.scan_drift_px * scene.sem_pixel_nm;
   for (int y = 0; y < frame.height; ++y) {
@@ -200,9 +197,9 @@ HeightField dilated(const SampleJob& job, const SampleScene& scene, const Sample
     const double by_x = (m.xx + m.xy) * along / scene.afm_pitch_nm,
                  by_y = (m.yx + m.yy) * along / scene.afm_pitch_nm;
     for (int x = 0; x < frame.width; ++x)
-      scan.z_nm(x, y) = drift_nm == 0 ? image.z_nm((x + margin) * fine, (y + margin) * fine)
-                                      : between(image.z_nm, (x + by_x + margin) * fine,
-                                                (y + by_y + margin) * fine);
+      scan.z_nm(x, y) =
+          drift_nm == 0 ? image.z_nm((x + margin) * fine, (y + margin) * fine)
+                        : between(ideal, (x + by_x + margin) * fine, (y + by_y + margin) * fine);
   }
   return scan;
 }
@@ -258,18 +255,12 @@ std::vector<mc::Detector> detector_of(const SampleJob& job) {
 /// Displaces rows along themselves.
 void jitter_rows(double deviation_px, std::uint64_t seed, Grid<float>& image) {
   const Grid<double> displaced = simulate_noise({0, 1}, image.height(), 1, seed + 1000);
-  std::vector<float> row(static_cast<std::size_t>(image.width()));
-  for (int y = 0; y < image.height(); ++y) {
-    const double by = deviation_px * displaced(y, 0);
-    for (int x = 0; x < image.width(); ++x) {
-      const double from = std::clamp(x - by, 0.0, image.width() - 1.0);
-      const int left = std::min(static_cast<int>(from), image.width() - 2);
-      const double share = from - left;
-      row[static_cast<std::size_t>(x)] =
-          static_cast<float>((1 - share) * image(left, y) + share * image(left + 1, y));
-    }
-    for (int x = 0; x < image.width(); ++x) image(x, y) = row[static_cast<std::size_t>(x)];
-  }
+  PlacedImage straight;
+  straight.values = Grid<double>(image.width(), image.height());
+  std::ranges::copy(image.data(), straight.values.data().begin());
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x)
+      image(x, y) = static_cast<float>(between(straight, x - deviation_px * displaced(y, 0), y));
 }
 
 /// The simulated signal of the detector. The gain drifts along a wave over the image's diagonal.

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "chain_steps.h"
-#include "first_calibration.h"
 #include "surf/core/units.h"
 #include "surf/reconstruction/tilt_by_sem.h"
 
@@ -72,6 +71,19 @@ ReconstructionOptions coarse_options(const ReconstructJob& job, const Reconstruc
   return coarse;
 }
 
+SemData sem_at(const ReconstructJob& job, const ReconstructSummary& s, const PlacedImage& image,
+               const Affine& map, const FirstCalibration& calibration) {
+  SemData sem{image,
+              s.model->model,
+              calibration.gains,
+              calibration.offset,
+              calibration.noise,
+              map,
+              usual_discrepancy(image, job.model_error)};
+  if (job.line_jitter_px > 0) sem.row_jitter = line_jitter(image, job.line_jitter_px);
+  return sem;
+}
+
 SemData prepare_sem(const ReconstructJob& job, ReconstructSummary& s, const PlacedImage& image,
                     AfmData* afm, const Reporter& told) {
   begin(told, "calibration");
@@ -83,17 +95,7 @@ SemData prepare_sem(const ReconstructJob& job, ReconstructSummary& s, const Plac
   const int threads = job.options.threads;
   FirstCalibration first =
       calibrate_first(image, eroded, *s.model->model, map, job.calibration, job.sem_noise, threads);
-  const auto data = [&] {
-    SemData sem{image,
-                s.model->model,
-                first.gains,
-                first.offset,
-                first.noise,
-                map,
-                usual_discrepancy(image, job.model_error)};
-    if (job.line_jitter_px > 0) sem.shapes.of_rows = line_jitter(image, job.line_jitter_px);
-    return sem;
-  };
+  const auto data = [&] { return sem_at(job, s, image, map, first); };
   const bool calibrates = !(job.calibration && job.sem_noise);
   if (afm && job.tilt) s.tilt = *job.tilt, tilt_scan(s.tilt, image, map, *s.afm, *afm);
   for (int round = 0; afm && (calibrates || levels) && round < rounds; ++round) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "first_calibration.h"
 #include "surf/workflow/reconstruct_job.h"
 
 namespace surf::workflow {
@@ -9,6 +10,10 @@ namespace surf::workflow {
 /// few iterations. `gains_tied`: the channels cannot be told apart, so that their gain stays.
 ReconstructionOptions coarse_options(const ReconstructJob& job, const ReconstructSummary& summary,
                                      bool gains_tied);
+
+/// The SEM image at a place in the scan, and all that its model may be off by.
+SemData sem_at(const ReconstructJob& job, const ReconstructSummary& summary,
+               const PlacedImage& image, const Affine& map, const FirstCalibration& calibration);
 
 /// Calibrates the SEM image, estimates its noise, and levels the scan by both images. With a scan
 /// all of it is done twice: the eroded scan is too broad where it matters, so a first, coarse

@@ -14,7 +14,7 @@ constexpr double touched_px = 3;    // contacts lie closer than this where the t
 constexpr double least_gap_px = 2;  // a chance gap between contacts hides no depth
 constexpr int gap_px = 6;           // half of what counts as one narrow place
 constexpr double soft_px = 1;
-constexpr double around_px = 2;       // range over which the image may object
+constexpr double around_px = 2;       // range over which the signal is averaged
 constexpr double model_error = 0.08;  // of the signal in narrow places, where shadows meet edges
 constexpr double steps_nm[] = {2, 4, 8, 16, 32, 64, 128};
 
@@ -35,7 +35,7 @@ Grid<double> distances(const std::vector<Contact>& contacts, int width, int heig
 /// From 0 at the rim of a place without contacts to 1 in its middle.
 Grid<double> depth_within(const Grid<double>& distance) {
   const int w = distance.width(), h = distance.height();
-  Grid<double> beyond = distance, along = distance, out(w, h);
+  Grid<double> beyond = distance, out(w, h);
   for (double& d : beyond.data()) d = std::max(0.0, d - touched_px);
   const auto widest = [](const Grid<double>& from, bool along_x) {
     Grid<double> to = from;

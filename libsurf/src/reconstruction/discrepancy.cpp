@@ -39,9 +39,9 @@ struct Part {
 struct Discrepancy::Layout {
   int width = 0, height = 0, coefficients = 0, columns = 0, rows = 0;
   std::vector<Part> parts;
-  SemShapes shapes;
-  int first_row = 0, first_shape = 0;  // numbers of their first coefficients
-  bool has_rows() const { return !shapes.of_rows.empty(); }
+  Grid<double> row_jitter;
+  int first_row = 0;  // number of the rows' first coefficient
+  bool has_rows() const { return !row_jitter.empty(); }
   Matrix pattern;  // lower triangle
 
   /// Calls with the cell's pixels and its coefficients, for each cell of the finest part.
@@ -97,10 +97,7 @@ struct Discrepancy::Layout {
       }
     }
     for (int y = 0; has_rows() && y < height; ++y)
-      for (int x = 0; x < width; ++x) out(x, y) += c(first_row + y) * shapes.of_rows(x, y);
-    for (std::size_t k = 0; k < shapes.of_image.size(); ++k)
-      for (std::size_t i = 0; i < out.size(); ++i)
-        out.data()[i] += c(first_shape + static_cast<int>(k)) * shapes.of_image[k].data()[i];
+      for (int x = 0; x < width; ++x) out(x, y) += c(first_row + y) * row_jitter(x, y);
     return out;
   }
 
@@ -125,20 +122,15 @@ struct Discrepancy::Layout {
         }
     }
     for (int y = 0; has_rows() && y < height; ++y)
-      for (int x = 0; x < width; ++x) out(first_row + y) += shapes.of_rows(x, y) * v(x, y);
-    for (std::size_t k = 0; k < shapes.of_image.size(); ++k)
-      for (std::size_t i = 0; i < v.size(); ++i)
-        out(first_shape + static_cast<int>(k)) += shapes.of_image[k].data()[i] * v.data()[i];
+      for (int x = 0; x < width; ++x) out(first_row + y) += row_jitter(x, y) * v(x, y);
     return out;
   }
 };
 
-Discrepancy::Discrepancy(const std::vector<SemDiscrepancy>& parts, const SemShapes& shapes) {
+Discrepancy::Discrepancy(const std::vector<SemDiscrepancy>& parts, const Grid<double>& row_jitter) {
   auto layout = std::make_shared<Layout>();
-  layout->shapes = shapes;
-  const Grid<double>& first = !parts.empty()            ? parts.front().deviation
-                              : !shapes.of_rows.empty() ? shapes.of_rows
-                                                        : shapes.of_image.front();
+  layout->row_jitter = row_jitter;
+  const Grid<double>& first = parts.empty() ? row_jitter : parts.front().deviation;
   layout->width = first.width(), layout->height = first.height();
   int finest = 0;
   for (const SemDiscrepancy& given : parts) {
@@ -159,10 +151,8 @@ Discrepancy::Discrepancy(const std::vector<SemDiscrepancy>& parts, const SemShap
     layout->columns = (layout->width + finest - 1) / finest;
     layout->rows = (layout->height + finest - 1) / finest;
   }
-  const int splines_alone = layout->coefficients;
-  layout->first_row = splines_alone;
-  layout->first_shape = layout->first_row + (layout->has_rows() ? layout->height : 0);
-  layout->coefficients = layout->first_shape + static_cast<int>(shapes.of_image.size());
+  layout->first_row = layout->coefficients;
+  if (layout->has_rows()) layout->coefficients += layout->height;
   std::vector<Eigen::Triplet<double>> entries;
   layout->for_each_cell([&](int, int, int, int, const std::vector<int>& numbers) {
     for (const int a : numbers)
@@ -174,9 +164,7 @@ Discrepancy::Discrepancy(const std::vector<SemDiscrepancy>& parts, const SemShap
       for (int y = y0; y < y1; ++y)
         for (const int b : numbers) entries.emplace_back(layout->first_row + y, b, 0.0);
     });
-  for (int k = splines_alone; k < layout->first_shape; ++k) entries.emplace_back(k, k, 0.0);
-  for (int k = layout->first_shape; k < layout->coefficients; ++k)
-    for (int b = 0; b <= k; ++b) entries.emplace_back(k, b, 0.0);
+  for (int k = layout->first_row; k < layout->coefficients; ++k) entries.emplace_back(k, k, 0.0);
   layout->pattern.resize(layout->coefficients, layout->coefficients);
   layout->pattern.setFromTriplets(entries.begin(), entries.end());
   layout->pattern.makeCompressed();
@@ -195,14 +183,14 @@ struct Discrepancy::Factor::Solver {
     for (int y = 0; y < layout.height; ++y) {
       double own = 0;
       for (int x = 0; x < layout.width; ++x)
-        own += weight(x, y) * std::pow(layout.shapes.of_rows(x, y), 2);
+        own += weight(x, y) * std::pow(layout.row_jitter(x, y), 2);
       matrix.coeffRef(layout.first_row + y, layout.first_row + y) = own;
     }
     layout.for_each_cell([&](int x0, int y0, int x1, int y1, const std::vector<int>& numbers) {
       for (int y = y0; y < y1; ++y) {
         std::vector<double> sums(count);
         for (int x = x0; x < x1; ++x) {
-          const double w = weight(x, y) * layout.shapes.of_rows(x, y);
+          const double w = weight(x, y) * layout.row_jitter(x, y);
           if (w == 0) continue;
           layout.at(x, y, b.data());
           for (std::size_t i = 0; i < count; ++i) sums[i] += w * b[i];
@@ -237,13 +225,6 @@ Discrepancy::Factor::Factor(std::shared_ptr<const Layout> layout, const Grid<dou
           matrix.coeffRef(numbers[i], numbers[k]) += sums[i * count + k];
   });
   if (layout_->has_rows()) Solver::add_rows(*layout_, weight_, matrix);
-  for (int k = layout_->first_shape; k < layout_->coefficients; ++k) {
-    Grid<double> weighted =
-        layout_->shapes.of_image[static_cast<std::size_t>(k - layout_->first_shape)];
-    for (std::size_t i = 0; i < weighted.size(); ++i) weighted.data()[i] *= weight_.data()[i];
-    const Vector with = layout_->transpose(weighted);
-    for (int b = 0; b <= k; ++b) matrix.coeffRef(k, b) = with(b);
-  }
   for (int k = 0; k < layout_->coefficients; ++k) matrix.coeffRef(k, k) += 1;
   solver_->factor.compute(matrix);
   if (solver_->factor.info() != Eigen::Success)
@@ -281,10 +262,6 @@ Grid<double> Discrepancy::Factor::precision(const Grid<double>& v) const {
 }
 
 int Discrepancy::Factor::rows() const { return layout_->has_rows() ? layout_->height : 0; }
-
-int Discrepancy::Factor::shapes() const {
-  return static_cast<int>(layout_->shapes.of_image.size());
-}
 
 Grid<double> Discrepancy::Factor::draw(std::uint64_t seed, std::uint64_t stream) const {
   NormalNumbers normal(seed, stream);

@@ -16,10 +16,11 @@ namespace surf::reconstruction {
 /// residual, and the likelihood that is left has the noise's covariance and the discrepancy's.
 class Discrepancy {
  public:
-  /// Parts and shapes on the surface's samples, without correlation between them. Spacings of the
-  /// grids are the parts' correlation lengths, rounded so that each is a multiple of the first.
-  /// Parts rise in length.
-  explicit Discrepancy(const std::vector<SemDiscrepancy>& parts, const SemShapes& shapes = {});
+  /// Parts and the jitter of rows (see SemData) on the surface's samples, without correlation
+  /// between them. Spacings of the grids are the parts' correlation lengths, rounded so that each
+  /// is a multiple of the first. Parts rise in length.
+  explicit Discrepancy(const std::vector<SemDiscrepancy>& parts,
+                       const Grid<double>& row_jitter = {});
   ~Discrepancy();
 
   /// For pixels of precisions `weight` (1 / variance of the noise; 0: does not count).
@@ -39,7 +40,7 @@ class Discrepancy::Factor {
   struct Fit {
     Grid<double> field;                ///< the most likely discrepancy, in the image's unit
     double penalty = 0;                ///< minus the logarithm of its prior, without constants
-    std::vector<double> coefficients;  ///< of splines, rows and shapes, in this order
+    std::vector<double> coefficients;  ///< of splines, then of rows
   };
   Fit fit(const Grid<double>& residual) const;
   /// By how much what is left of a residual and its penalty rise with each pixel of the residual
@@ -48,9 +49,7 @@ class Discrepancy::Factor {
   Grid<double> spread(const Grid<double>& v, const Fit& fit) const;
   /// Q v, where Q is the inverse of the covariance of noise and discrepancy.
   Grid<double> precision(const Grid<double>& v) const;
-  /// Numbers of coefficients of rows and of shapes, the last ones of all.
-  int rows() const;
-  int shapes() const;
+  int rows() const;  ///< number of coefficients of rows
   /// A draw of the discrepancy by its prior.
   Grid<double> draw(std::uint64_t seed, std::uint64_t stream) const;
 

@@ -50,15 +50,12 @@ void check_discrepancy(const SemData& sem) {
                          "Give lengths from 1 to 1000 that do not fall");
     before_px = part.correlation_px;
   }
-  const auto check_shape = [&](const Grid<double>& shape) {
-    if (shape.width() != sem.image.values.width() || shape.height() != sem.image.values.height() ||
-        !std::ranges::all_of(shape.data(), [](double v) { return std::isfinite(v); }))
-      throw InvalidInput("SEM shapes",
-                         "a shape is not finite, or has another size than the SEM image",
-                         "Give a value for each pixel");
-  };
-  if (!sem.shapes.of_rows.empty()) check_shape(sem.shapes.of_rows);
-  for (const Grid<double>& shape : sem.shapes.of_image) check_shape(shape);
+  const Grid<double>& jitter = sem.row_jitter;
+  if (!jitter.empty() &&
+      (jitter.width() != sem.image.values.width() || jitter.height() != sem.image.values.height() ||
+       !std::ranges::all_of(jitter.data(), [](double v) { return std::isfinite(v); })))
+    throw InvalidInput("SEM image", "the jitter of its rows is not finite, or has another size",
+                       "Give a value for each pixel");
 }
 
 void check(const AfmData* afm, const SemData* sem, const ReconstructionOptions& o) {
@@ -128,7 +125,7 @@ class Work {
     start_ = at_.z_nm;
     if (sem) {
       objective_.sem.emplace(*sem, frame, margin_, margin_, options.threads);
-      at_.mixture = {sem->gains, sem->offset, sem->blur_px2};
+      at_.mixture = {sem->gains, sem->offset};
     }
     objective_.fit_map = afm && sem && options.refine_transform;
     objective_.fit_drift = objective_.fit_map && options.refine_drift;
@@ -376,10 +373,9 @@ class Work {
       out.sem_residual = cut(sem_white(s));
       if (!s.sem->discrepancy.empty()) {
         out.sem_discrepancy = cut(s.sem->discrepancy);
-        if (!s.sem->row_sizes.empty())
-          out.sem_row_sizes.assign(s.sem->row_sizes.begin() + margin_,
-                                   s.sem->row_sizes.end() - margin_);
-        out.sem_shape_sizes = s.sem->shape_sizes;
+        if (!s.sem->row_jitter.empty())
+          out.sem_row_jitter.assign(s.sem->row_jitter.begin() + margin_,
+                                    s.sem->row_jitter.end() - margin_);
         out.sem_discrepancy_share =
             share_of(s.sem->discrepancy, s.sem->simulated, objective_.sem->used());
       }

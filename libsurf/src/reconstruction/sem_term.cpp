@@ -27,10 +27,8 @@ SemTerm::SemTerm(const SemData& data, const SurfaceFrame& frame, int left, int b
       used_(x + left, y + below) = 1;
       ++used_pixels_;
     }
-  if (data.discrepancy.empty() && data.shapes.of_rows.empty() && data.shapes.of_image.empty())
-    return;
+  if (data.discrepancy.empty() && data.row_jitter.empty()) return;
   const auto placed = [&](const Grid<double>& given) {
-    if (given.empty()) return given;
     Grid<double> out(frame.width, frame.height);
     for (int y = 0; y < given.height(); ++y)
       for (int x = 0; x < given.width(); ++x) out(x + left, y + below) = given(x, y);
@@ -39,9 +37,7 @@ SemTerm::SemTerm(const SemData& data, const SurfaceFrame& frame, int left, int b
   std::vector<SemDiscrepancy> parts;
   for (const SemDiscrepancy& given : data.discrepancy)
     parts.push_back({placed(given.deviation), given.correlation_px});
-  SemShapes shapes{placed(data.shapes.of_rows), {}};
-  for (const Grid<double>& given : data.shapes.of_image) shapes.of_image.push_back(placed(given));
-  discrepancy_.emplace(parts, shapes);
+  discrepancy_.emplace(parts, data.row_jitter.empty() ? Grid<double>() : placed(data.row_jitter));
   // By the image itself, so that one factor does for all surfaces.
   const Grid<double> soft = GaussianBasis(soft_px, threads).sum(image_);
   Grid<double> weight(frame.width, frame.height);
@@ -85,9 +81,7 @@ SemTerm::State SemTerm::evaluate(const Grid<double>& z, const Mixture& mixture) 
   const Grid<double> through = factor_->spread(left, fit);
   for (std::size_t i = 0; i < through.size(); ++i) s.pull.data()[i] += through.data()[i];
   s.discrepancy = std::move(fit.field);
-  const auto shapes_begin = fit.coefficients.end() - factor_->shapes();
-  s.shape_sizes.assign(shapes_begin, fit.coefficients.end());
-  s.row_sizes.assign(shapes_begin - factor_->rows(), shapes_begin);
+  s.row_jitter.assign(fit.coefficients.end() - factor_->rows(), fit.coefficients.end());
   return s;
 }
 

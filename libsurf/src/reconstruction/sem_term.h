@@ -41,9 +41,8 @@ class SemTerm {
     Grid<double> pull;         ///< derivative of the term by each simulated pixel, 0 where not used
     Grid<double> information;  ///< expected second derivative by each simulated pixel
     double value = 0;
-    Grid<double> discrepancy;  ///< the most likely one; empty without
-    /// The likeliest sizes of SemShapes: of the surface's rows, of images.
-    std::vector<double> row_sizes, shape_sizes;
+    Grid<double> discrepancy;        ///< the most likely one; empty without
+    std::vector<double> row_jitter;  ///< the likeliest of each of the surface's rows; or empty
   };
 
   /// A sparse approximation of J that is exact for waves of 12 samples along x and y: a pixel

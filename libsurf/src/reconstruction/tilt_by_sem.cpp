@@ -36,7 +36,7 @@ SemTilt tilt_by_sem(const HeightField& surface, const SemData& sem, const Affine
       planes[0](x, y) = p.x - middle.x;
       planes[1](x, y) = p.y - middle.y;
     }
-  Mixture mixture{sem.gains, sem.offset, sem.blur_px2};
+  Mixture mixture{sem.gains, sem.offset};
   while (tilt.iterations < most_iterations) {
     ++tilt.iterations;
     Grid<double> z = surface.z_nm;

@@ -13,11 +13,7 @@
 namespace surf {
 namespace {
 
-ReconstructionOptions quick() {
-  ReconstructionOptions o;
-  o.uncertainty = false;
-  return o;
-}
+using test::quick;
 
 bool is_finite(const Grid<double>& grid) {
   return std::all_of(grid.data().begin(), grid.data().end(),

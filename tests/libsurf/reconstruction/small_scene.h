@@ -13,6 +13,12 @@
 
 namespace surf::test {
 
+inline ReconstructionOptions quick() {
+  ReconstructionOptions o;
+  o.uncertainty = false;
+  return o;
+}
+
 /// A rounded block beside a dimple, 100 nm high: the surface of every place, nm.
 inline double small_height(Point2 p) {
   const auto edge = [](double d) { return 0.5 * (1 + std::erf(d / 28)); };

@@ -12,11 +12,7 @@
 namespace surf {
 namespace {
 
-ReconstructionOptions quick() {
-  ReconstructionOptions o;
-  o.uncertainty = false;
-  return o;
-}
+using test::quick;
 
 /// A scan whose first and last rows are displaced by 3 SEM pixels along both axes.
 test::SmallScene drifted() {
@@ -72,20 +68,20 @@ TEST(Unknowns, DisplacedLinesOfTheImageAreFoundRowByRow) {
                                 image.width(), image.height())
                         .value(straight);
   scene.sem.discrepancy = usual_discrepancy(scene.sem.image, 0.03);
-  scene.sem.shapes.of_rows = line_jitter(scene.sem.image, 0.7);
+  scene.sem.row_jitter = line_jitter(scene.sem.image, 0.7);
   const Reconstruction r = reconstruct(&scene.afm, &scene.sem, quick());
-  ASSERT_EQ(r.sem_row_sizes.size(), 48u);
+  ASSERT_EQ(r.sem_row_jitter.size(), 48u);
   double together = 0, found = 0, truth = 0;
   for (int y = 14; y < 34; ++y) {  // rows that cross the block
-    const double size = r.sem_row_sizes[static_cast<std::size_t>(y)];
+    const double size = r.sem_row_jitter[static_cast<std::size_t>(y)];
     together += size * by(y, 0), found += size * size, truth += by(y, 0) * by(y, 0);
   }
   EXPECT_GT(together / std::sqrt(found * truth), 0.9);
 }
 
-TEST(Unknowns, ShapesMustFitTheImage) {
+TEST(Unknowns, TheJitterOfRowsMustFitTheImage) {
   test::SmallScene scene;
-  scene.sem.shapes.of_image = {Grid<double>(3, 3)};
+  scene.sem.row_jitter = Grid<double>(3, 3);
   EXPECT_THROW(reconstruct(&scene.afm, &scene.sem, quick()), InvalidInput);
 }
 

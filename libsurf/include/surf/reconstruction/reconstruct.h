@@ -40,16 +40,6 @@ struct SemDiscrepancy {
   double correlation_px = 4;  ///< its correlation length, 1 to 1000; rounded to whole pixels
 };
 
-/// What the SEM image may have beside model, noise and discrepancy: images of known shape and
-/// unknown size. Sizes are normal, of mean 0 and deviation 1, and eliminated with the discrepancy.
-struct SemShapes {
-  /// A size for each row: what lines that are displaced by one standard deviation change. Empty:
-  /// lines are where they belong.
-  Grid<double> of_rows;
-  /// A size for each image: what one standard deviation of it changes, as of a film's thickness.
-  std::vector<Grid<double>> of_image;
-};
-
 /// What a displacement of lines along x by `deviation_px` changes in the image, pixel by pixel: its
 /// slope over 1.5 pixels. Throws InvalidInput.
 Grid<double> line_jitter(const PlacedImage& image, double deviation_px);
@@ -70,10 +60,10 @@ struct SemData {
   /// Independent of each other, in the order of their correlation lengths; none: the model is
   /// right.
   std::vector<SemDiscrepancy> discrepancy = {};
-  SemShapes shapes = {};
-  /// By how much the real spot's variance along each axis exceeds the model's, in squared pixels;
-  /// -0.4 to 2.
-  double blur_px2 = 0;
+  /// What rows that are displaced along themselves by one standard deviation change in the image
+  /// (see `line_jitter`). Each row's displacement, in deviations, is standard normal and eliminated
+  /// with the discrepancy. Empty: rows are where they belong.
+  Grid<double> row_jitter = {};
 };
 
 enum class ReconstructionMethod {
@@ -198,9 +188,12 @@ struct Reconstruction {
   HeightField surface;
   Affine sem_to_afm;
   std::vector<double> gains;
-  double offset = 0, blur_px2 = 0;  ///< see SemData
-  /// What the map is displaced by at the scan's first and last rows beyond a steady drift, pixels
-  /// of the surface: times 2/3 there, minus 1/3 in the middle.
+  double offset = 0;
+  /// By how much the real spot's variance along each axis exceeds the model's, in squared pixels,
+  /// -0.4 to 2; 0: not fitted.
+  double blur_px2 = 0;
+  /// What a scan that drifts unsteadily is displaced by, in pixels of the surface: 2/3 of it at the
+  /// ends of the part in use, along the longer side, and -1/3 in the middle; 0: not fitted.
   Point2 scan_drift_px{};
   Tip tip;            ///< fitted or given tip, on the AFM's samples; empty without AFM
   HeightField start;  ///< initial surface: the eroded scan on the surface's samples
@@ -212,8 +205,8 @@ struct Reconstruction {
   Grid<double> simulated_sem;    ///< on the surface's samples. Empty without SEM
   Grid<double> sem_residual;     ///< whitened, with the discrepancy taken off
   Grid<double> sem_discrepancy;  ///< what the model is off by, most likely. Empty without
-  /// The likeliest sizes of `SemShapes`, in standard deviations; empty without.
-  std::vector<double> sem_row_sizes, sem_shape_sizes;
+  /// The likeliest displacements of rows, in the standard deviations of `SemData::row_jitter`.
+  std::vector<double> sem_row_jitter;
   /// Its root mean square over the standard deviation of the simulated image.
   double sem_discrepancy_share = 0;
 
