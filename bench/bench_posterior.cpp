@@ -59,7 +59,6 @@ struct Errors {
                     std::vector{OneError{off, std::sqrt(deviation * deviation - bias * bias)}});
   }
   bool converged = true;
-  std::array<std::vector<double>, 3> draw_ratio;  // logarithms, of map, gain and offset, tip
 };
 
 const char* const map_names[affine_numbers] = {"rotation", "pixel size x", "pixel size y",
@@ -117,7 +116,6 @@ void add_functions(const DrawnScene& scene, const Fitted& f, Errors& errors) {
   for (std::size_t k = 0; k < tip_numbers; ++k)
     off.emplace_back(fmt::format("tip, place {}", k / tip_waves + 1),
                      f.at.tip[k] - scene.true_tip[k]);
-  const std::size_t few = off.size();
   off.emplace_back("tip, radius of the apex", apex_radius(f.at.tip) - apex_radius(scene.true_tip));
   functions.push_back(f.objective.zero());
   functions.back().tip = apex_radius_by_tip();
@@ -133,22 +131,12 @@ void add_functions(const DrawnScene& scene, const Fitted& f, Errors& errors) {
   const auto width = line_width(f.result.surface, scene.line),
              true_width = line_width(scene.truth, scene.line);
   if (width && true_width) add_scalar("width of the line", *width, true_width->value);
-  const std::vector<double> d = deviations_of(f.objective, f.at, a, bias, functions, 0.05, {});
+  const std::vector<double> d = deviations_of(f.objective, f.at, a, bias, functions, {});
   for (std::size_t k = 0; k < off.size(); ++k) {
     const double by_bias = dot(functions[k], bias);
     errors.add(off[k].first, off[k].second, d[k], by_bias);
     if (off[k].first.starts_with("tip, place"))
       errors.add("tip, all", off[k].second, d[k], by_bias);
-  }
-  // What `reconstruct` states.
-  const UnknownDeviations& given = f.result.unknown_deviations;
-  std::vector<double> by_draws;
-  for (const double v : numbers_of(given.sem_to_afm)) by_draws.push_back(v);
-  by_draws.insert(by_draws.end(), {given.gain_factor, given.offset});
-  by_draws.insert(by_draws.end(), given.tip_change.begin(), given.tip_change.end());
-  for (std::size_t k = 0; k < few; ++k) {
-    const std::size_t kind = k < affine_numbers ? 0 : k < affine_numbers + 2 ? 1 : 2;
-    errors.draw_ratio[kind].push_back(std::log(by_draws[k] / d[k]));
   }
 }
 
@@ -165,12 +153,8 @@ void print_tables(const std::vector<Errors>& found) {
   const auto fits = static_cast<double>(found.size());
   ScaledErrors all;
   int ended = 0;
-  std::array<std::vector<double>, 3> draw_ratio;
   for (std::size_t i = 0; i < found.size(); ++i) {
     ended += found[i].converged;
-    for (std::size_t k = 0; k < draw_ratio.size(); ++k)
-      draw_ratio[k].insert(draw_ratio[k].end(), found[i].draw_ratio[k].begin(),
-                           found[i].draw_ratio[k].end());
     for (const auto& [quantity, errors] : found[i].of)
       all.add(quantity, static_cast<int>(i), errors);
   }
@@ -195,18 +179,7 @@ void print_tables(const std::vector<Errors>& found) {
       fits / 10);
   for (const char* const name : scalars) all.print_places(name);
   for (const char* const name : map_names) all.print_places(name);
-  fmt::print(
-      "\n  {} fits converged. Stated deviations over those by close solutions, mean and scatter of "
-      "logarithms:\n ",
-      ended);
-  const char* const kinds[] = {"map", "gain and offset", "tip"};
-  for (std::size_t k = 0; k < draw_ratio.size(); ++k) {
-    double mean = 0, squares = 0;
-    const auto n = static_cast<double>(draw_ratio[k].size());
-    for (const double r : draw_ratio[k]) mean += r / n;
-    for (const double r : draw_ratio[k]) squares += (r - mean) * (r - mean) / n;
-    fmt::print(" {} {:.2f} +- {:.2f}{}", kinds[k], mean, std::sqrt(squares), k < 2 ? "," : "\n\n");
-  }
+  fmt::print("\n  {} fits converged.\n\n", ended);
 }
 
 int calibrate(const std::shared_ptr<const ImageModel>& model, int fits, std::uint64_t first) {

@@ -60,6 +60,26 @@ void print_surface(const Reconstruction& r) {
                               share(1), share(2), share(3), share(0)));
 }
 
+/// What the fit was told to find besides the surface.
+void print_unknowns(const Reconstruction& r, const workflow::ReconstructJob& job) {
+  if (job.options.refine_spot)
+    line("spot",
+         fmt::format("{} than the model's, as by a blur of {}",
+                     r.blur_px2 < 0 ? "narrower" : "wider",
+                     format_length(std::sqrt(std::abs(r.blur_px2)) * r.surface.pitch_x_nm)));
+  if (!job.film.empty()) line("film", fmt::format("{} of {}", format_length(r.film_nm), job.film));
+  if (job.options.refine_drift)
+    line("drift", fmt::format("the scan's ends are displaced by {:.2g}, {:.2g} SEM pixels against "
+                              "its middle",
+                              r.scan_drift_px.x, r.scan_drift_px.y));
+  if (r.sem_row_jitter.empty()) return;
+  double squares = 0;
+  for (const double deviations : r.sem_row_jitter) squares += deviations * deviations;
+  line("jitter",
+       fmt::format("rows of the SEM image are displaced by {:.2g} pixels, rms",
+                   job.line_jitter_px * std::sqrt(squares / double(r.sem_row_jitter.size()))));
+}
+
 void print_summary(const workflow::ReconstructSummary& s, const workflow::ReconstructJob& job) {
   if (s.pose) print_pose(*s.pose, job.sem->image.pitch_x_nm);
   if (s.verdict == ReconstructionVerdict::not_registered) return print_written(s.written);
@@ -73,6 +93,7 @@ void print_summary(const workflow::ReconstructSummary& s, const workflow::Recons
                            s.result.gains[c]);
     line("gains", fmt::format("{}; offset {:.5g}", gains, s.result.offset));
   }
+  print_unknowns(s.result, job);
   print_scales(s.result.scales);
   if (!s.result.scales.empty()) {
     print_residual("AFM", s.result.scales.back().afm_residual);

@@ -85,6 +85,7 @@ workflow::ReconstructJob make_reconstruct_job(const ChainOptions& o) {
     job.calibration = {c.gains, c.offset};
   }
   if (job.sem) take_model(o, inputs, job.options.threads, job.model);
+  job.material_files = inputs.material.files;
   if (job.afm) take_afm(o, inputs, *job.afm);
   if (job.sem) take_sem(o, inputs, *job.sem);
   if (job.afm && job.sem) take_pose(o, inputs, job.afm->scan, job.sem->image, job.pose);

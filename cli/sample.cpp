@@ -144,8 +144,9 @@ void add_sample(CLI::App& app, Action& action) {
   o->bound.add<workflow::SampleJob>(
       *sub, making, {},
       {"sample.electrons", "sample.size", "simulation.physics", "sample.tip_lean",
-       "sample.tip_azimuth", "sample.gain_drift", "sample.spot", "sample.detector",
-       "sample.scan_drift", "sample.line_jitter", "sample.seed", "job.cache", "job.threads"});
+       "sample.tip_azimuth", "sample.gain_drift", "sample.spot", "sample.detector", "sample.film",
+       "sample.film_thickness", "sample.scan_drift", "sample.line_jitter", "sample.seed",
+       "job.cache", "job.threads"});
   add_quiet_flag(*sub, o->quiet)->group(making);
   sub->footer(examples);
   sub->callback([o, &action] { action = [o] { return sample(*o); }; });

@@ -89,4 +89,35 @@ TipChange apex_radius_by_tip() {
   return out;
 }
 
+std::vector<Step> map_functions(const Objective& o, const Unknowns& at) {
+  const SurfaceFrame& f = o.frame;
+  const Point2 middle{f.origin_x_nm + 0.5 * (f.width - 1) * f.pitch_nm,
+                      f.origin_y_nm + 0.5 * (f.height - 1) * f.pitch_nm};
+  const auto parts = [&](int number, double samples) {
+    Step step = o.zero();
+    step.map[static_cast<std::size_t>(number)] = samples;
+    const Affine map = o.moved(at, step).surface_to_afm;
+    const AffineParts p = parts_of(map);
+    const Point2 there = map(middle);
+    return MapChange{p.rotation_rad, p.scale_x, p.scale_y, p.shear, there.x, there.y};
+  };
+  std::vector<Step> out(affine_numbers, o.zero());
+  constexpr double samples = 1e-4;
+  for (int k = 0; k < affine_numbers; ++k) {
+    const MapChange up = parts(k, samples), down = parts(k, -samples);
+    for (std::size_t i = 0; i < affine_numbers; ++i)
+      out[i].map[static_cast<std::size_t>(k)] = (up[i] - down[i]) / (2 * samples);
+  }
+  return out;
+}
+
+std::vector<Step> few_functions(const Objective& o, const Unknowns& at) {
+  std::vector<Step> out =
+      o.fit_map ? map_functions(o, at) : std::vector<Step>(affine_numbers, o.zero());
+  out.resize(affine_numbers + 2 + tip_numbers, o.zero());
+  for (std::size_t k = 0; k < 2; ++k) out[affine_numbers + k].mixture[k] = 1;
+  for (std::size_t k = 0; k < tip_numbers; ++k) out[affine_numbers + 2 + k].tip[k] = 1;
+  return out;
+}
+
 }  // namespace surf::bench

@@ -25,4 +25,9 @@ std::optional<Scalar> line_width(const HeightField& surface, const Block& line);
 double apex_radius(const reconstruction::TipChange& tip);
 reconstruction::TipChange apex_radius_by_tip();
 
+/// Linear functions of the unknowns, by their derivatives: the map's parts (the shift is that of
+/// the middle of the surface), the common factor of the gains, the offset, and the tip's numbers.
+std::vector<reconstruction::Step> few_functions(const reconstruction::Objective& objective,
+                                                const reconstruction::Unknowns& at);
+
 }  // namespace surf::bench

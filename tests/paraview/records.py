@@ -71,6 +71,7 @@ STEPS = {
         "Probes": (3, "reconstruction.probes=3"), "ModelError": (0.02, "reconstruction.model_error=0.02"),
         "Corrections": (0, "reconstruction.corrections=0"), "CorrectionElectrons": (8, "reconstruction.correction_electrons=8"),
         "LineJitter": (0.3, "reconstruction.line_jitter=0.3"),
+        "Film": ("C", "reconstruction.film=C", {"Gains": "2,3", "Offset": "4"}),
         "FitDrift": (1, "reconstruction.fit_drift=on"), "FitSpot": (1, "reconstruction.fit_spot=on"),
         "ScanTilt": ("0,0", "reconstruction.scan_tilt=0,0,0,0"), "Upsample": (2, "reconstruction.upsample=2")},
     "AFMTip": {"Shape": ("Ball", "tip.shape=ball:5nm"), "Radius": (7, "tip.shape=cone:7nm,15deg"),

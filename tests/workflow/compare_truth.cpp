@@ -26,7 +26,9 @@ TEST(CompareTruth, TakesOffTheMedianAndCountsWhatIsCovered) {
   EXPECT_NEAR(report.coverage_2, 0.75, 0.01);
   ASSERT_FALSE(report.regions.empty());
   for (const RegionReport& region : report.regions)
-    if (region.pixels > 100) EXPECT_NEAR(region.coverage_2, 0.75, 0.1) << region.name;
+    if (region.pixels > 100) {
+      EXPECT_NEAR(region.coverage_2, 0.75, 0.1) << region.name;
+    }
 }
 
 /// A trench whose walls are displaced by 4 nm to the right, where 3 nm are stated.

@@ -150,6 +150,29 @@ TEST_F(CorrectedReconstruction, GoesOnInTheMiddleOfItsRounds) {
   EXPECT_EQ(io::read_file(job_.folder / "surface.vti"), wanted);
 }
 
+TEST_F(CorrectedReconstruction, AFilmThatIsNotThereHasNoThickness) {
+  job_.film = "SiO2";
+  job_.corrections = 1;
+  const ReconstructSummary s = run(job_);
+  EXPECT_LT(s.result.film_nm, 0.5);
+  EXPECT_EQ(s.result.gains, job_.calibration->gains);
+  const auto film = report("result")["sem"]["film"];
+  EXPECT_EQ(film["material"], "SiO2");
+  EXPECT_EQ(film["thickness_nm"], s.result.film_nm);
+  EXPECT_GT(film["relative_change_per_nm"][0][0], 0);
+  EXPECT_THAT(report("result")["repeat"].get<std::string>(), HasSubstr("--film SiO2"));
+}
+
+TEST_F(ReconstructJobTest, AFilmNeedsKnownGainsAndAKnownMaterial) {
+  job_.film = "SiO2";
+  EXPECT_THAT([&] { run(job_); }, ThrowsMessage<UsageError>(HasSubstr("reconstruction.gains")));
+  job_.calibration = {{100, 100}, 20};
+  TrainedModel model = io::read_model(path("si.json"));
+  model.scope.material = "somebody's own";
+  io::write_model(path("si.json"), model);
+  EXPECT_THAT([&] { run(job_); }, ThrowsMessage<UsageError>(HasSubstr("models of SE and BSE")));
+}
+
 TEST_F(ReconstructJobTest, ModelsOfOtherSignalsAreNotCorrected) {
   TrainedModel model = io::read_model(path("si.json"));
   model.scope.material = "somebody's own";

@@ -23,6 +23,7 @@ TEST(ReconstructionCheckpoint, AStateComesBackToTheLastBit) {
   state.gains = {0.1, 0.2};
   state.offset = -7;
   state.blur_px2 = 0.3;
+  state.film_nm = 1.7;
   state.scan_drift_px = {1.25, -2};
   state.tip_change = {0.25, -0.5};
   state.scales.resize(2);
@@ -38,6 +39,7 @@ TEST(ReconstructionCheckpoint, AStateComesBackToTheLastBit) {
   EXPECT_EQ(back->surface.z_nm, state.surface.z_nm);
   EXPECT_TRUE(std::signbit(back->surface.z_nm(1, 0)));
   EXPECT_EQ(back->blur_px2, 0.3);
+  EXPECT_EQ(back->film_nm, 1.7);
   EXPECT_EQ(back->scan_drift_px, state.scan_drift_px);
   EXPECT_EQ(back->tip_change, state.tip_change);
   EXPECT_EQ(back->scales[1].ended, "converged");

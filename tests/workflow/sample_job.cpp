@@ -171,6 +171,32 @@ TEST(SampleJob, MakesWhatAModelDoesNotKnow) {
   EXPECT_THROW(run(job), UsageError);
 }
 
+TEST(SampleJob, CoversTheSpecimenWithAFilm) {
+  const test::TemporaryFolder own, other;
+  const auto mean = [](const fs::path& folder, const char* channel) {
+    double sum = 0;
+    const Image image = io::read_image(folder / "truth_sem.exr");
+    for (const float v : image.find(channel)->values.data()) sum += v;
+    return sum;
+  };
+  SampleJob job = small("pads", own.path());
+  job.electrons = 30;
+  run(job);
+  const double bare = mean(own.path(), "BSE");
+  job.film = "Si";  // changes nothing
+  job.folder = other.path();
+  run(job);
+  EXPECT_NEAR(mean(other.path(), "BSE"), bare, 0.06 * bare);  // 5 standard errors
+  job.film = "Au";
+  run(job);
+  EXPECT_GT(mean(other.path(), "BSE"), 1.15 * bare);
+  const auto truth = nlohmann::json::parse(bytes_of(other.path() / "truth.json"));
+  EXPECT_EQ(truth.at("sem").at("film"), "Au");
+  EXPECT_EQ(truth.at("sem").at("film_nm"), 2);
+  job.film = "unobtainium";
+  EXPECT_THROW(run(job), UsageError);
+}
+
 TEST(SampleJob, LeavesNothingWhenCancelledOrRefused) {
   const test::TemporaryFolder folder;
   CancelToken cancel;

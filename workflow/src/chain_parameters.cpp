@@ -256,6 +256,12 @@ void describe(ParameterVisitor& visit, ReconstructJob& job) {
            .help = "By how many pixels the SEM image's rows may be displaced along themselves, as "
                    "a standard deviation",
            .limits = within(0, 5)});
+    visit(job.film,
+          {.name = "reconstruction.film",
+           .help = "Material of a film of 1 to 2 nm on the specimen, as SiO2 or C, whose thickness "
+                   "is found; gains and offset must be known",
+           .otherwise = "none",
+           .form = "MATERIAL"});
     visit(job.corrections,
           {.name = "reconstruction.corrections",
            .help = "Most rounds in which Monte Carlo images of the surface correct the model of "

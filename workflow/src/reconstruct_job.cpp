@@ -10,6 +10,7 @@
 #include "chain_steps.h"
 #include "compare_truth.h"
 #include "correct_and_reconstruct.h"
+#include "film_effect.h"
 #include "first_calibration.h"
 #include "job_identity.h"
 #include "judge_places.h"
@@ -81,6 +82,11 @@ Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const S
     id["offset"] = format_exact(sem->offset);
     id["SEM noise"] = text_of({sem->noise.slope, sem->noise.intercept, sem->noise.least_variance});
     id["transform"] = map_text(sem->sem_to_afm);
+    if (sem->film) {
+      id["film"] = sem->film->material;
+      for (const auto& numbers : sem->film->per_nm)
+        for (const double number : numbers) id["film"] += " " + format_exact(number);
+    }
     if (!sem->row_jitter.empty()) id["line jitter"] = hash_of(sem->row_jitter.data());
     for (const SemDiscrepancy& part : sem->discrepancy)
       id["model error"] +=
@@ -106,6 +112,12 @@ void check(const ReconstructJob& job) {
     throw UsageError(
         "`reconstruction.gains`", "without a scan there is nothing to calibrate with",
         "Say `reconstruction.gains` and `reconstruction.offset`, or give `reconstruction.afm`");
+  if (!job.film.empty() && !job.calibration)
+    throw UsageError("`reconstruction.film`",
+                     "a film changes an SEM image nearly as another gain does, so that its "
+                     "thickness is known only where gains and offset are",
+                     "Say `reconstruction.gains` and `reconstruction.offset`, or leave the film "
+                     "to the gains, which cost no accuracy");
   check_parameters(parameters_of(job));
   if (job.sem) validate(job.sem->image, "SEM image");
   if (job.picture && !job.folder.empty()) io::check_plot_target(job.folder / "panel.png");
@@ -238,6 +250,28 @@ std::optional<CorrectionRequest> correction_request(const ReconstructJob& job,
   return request;
 }
 
+/// What the film that is asked for changes in the yields.
+FilmEffect film_of(const ReconstructJob& job, const ReconstructSummary& s, const Reporter& told) {
+  io::MaterialLibrary materials;
+  std::vector<std::string> notes;
+  for (const std::string& file : job.material_files) materials.read(file, notes);
+  const std::optional<CorrectionRequest> known = correction_request(job, s);
+  if (!known)
+    throw UsageError("`reconstruction.film`",
+                     "what a film changes is known for models of SE and BSE of a known material "
+                     "and energy only",
+                     "Leave it out, or give a model that `semsurf train` made");
+  begin(told, "film");
+  FilmRequest request;
+  request.film = materials.find(job.film, "`reconstruction.film`");
+  request.specimen = known->material;
+  request.energy_ev = s.model->trained.scope.energy_ev;
+  request.physics = known->physics;
+  request.seed = job.options.seed;
+  request.threads = job.options.threads;
+  return film_effect(request, s.model->model->channels(), told.watch());
+}
+
 /// Collects the warnings of the chain's steps for a job.
 class Warnings {
  public:
@@ -259,8 +293,8 @@ ReconstructionOptions options_of(const ReconstructJob& job, const ReconstructSum
   ReconstructionOptions o = job.options;
   o.place_doubt_px = place_doubt_px(s);
   o.rough_ground = s.afm && s.afm->rough_ground;
-  // It would follow the direction in which the channels cannot be told apart.
-  if (s.gains_tied) o.refine_calibration = false;
+  // It would follow the direction in which the channels, or a film, cannot be told apart.
+  if (s.gains_tied || !job.film.empty()) o.refine_calibration = false;
   o.refine_tip = job.afm && job.sem && o.method == ReconstructionMethod::gauss_newton &&
                  job.refine_tip.value_or(s.afm && !s.afm->tip_given);
   return o;
@@ -305,6 +339,7 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
     afm = AfmData{s.afm->image, s.afm->tip, s.afm->noise, job.upsample, s.afm->level_doubt};
   if (afm && job.sem) judge_places(job, s, image, *afm, told);
   if (job.sem) sem = prepare_sem(job, s, image, afm ? &*afm : nullptr, told);
+  if (sem && !job.film.empty()) sem->film = film_of(job, s, told);
 
   begin(told, "reconstruction");
   const AfmData* afm_data = afm ? &*afm : nullptr;

@@ -125,10 +125,11 @@ Json sem_json(const ReconstructJob& job, const ReconstructSummary& s, const SemD
   }
   json["calibration_at_the_end"] = {
       {"gains", s.result.gains}, {"offset", s.result.offset}, {"blur_px2", s.result.blur_px2}};
-  if (!s.result.deviation_nm.empty())
-    json["calibration_at_the_end"]["deviations"] = {
-        {"gain_factor", s.result.unknown_deviations.gain_factor},
-        {"offset", s.result.unknown_deviations.offset}};
+  if (sem.film) {
+    json["film"] = {{"material", sem.film->material},
+                    {"thickness_nm", s.result.film_nm},
+                    {"relative_change_per_nm", sem.film->per_nm}};
+  }
   if (options_of(job, s).refine_drift)
     json["scan_drift_px"] = {s.result.scan_drift_px.x, s.result.scan_drift_px.y};
   return json;
@@ -141,14 +142,6 @@ Json pose_json(const ReconstructJob& job, const ReconstructSummary& s) {
                                             : "landmarks"}};
   json["transform"] = map_json(pose.sem_to_afm);
   json["transform_at_the_end"] = map_json(s.result.sem_to_afm);
-  if (!s.result.deviation_nm.empty()) {
-    const AffineParts& d = s.result.unknown_deviations.sem_to_afm;
-    json["deviations_at_the_end"] = {{"rotation_deg", d.rotation_rad / degrees_to_radians},
-                                     {"scale_x", d.scale_x},
-                                     {"scale_y", d.scale_y},
-                                     {"shear", d.shear},
-                                     {"shift_nm", {d.shift_x_nm, d.shift_y_nm}}};
-  }
   if (pose.landmarks)
     json["landmarks"] = {{"pairs", job.pose.landmarks.size()}, {"rms_nm", pose.landmarks->rms_nm}};
   if (!pose.registration) return json;
@@ -253,6 +246,7 @@ ReconstructJob parameters_of(const ReconstructJob& job) {
   out.sem_noise = job.sem_noise;
   out.model_error = job.model_error;
   out.line_jitter_px = job.line_jitter_px;
+  out.film = job.film;
   out.tilt = job.tilt;
   out.corrections = job.corrections;
   out.correction_electrons = job.correction_electrons;

@@ -12,7 +12,7 @@
 namespace surf::workflow {
 namespace {
 
-constexpr std::string_view mark = "semsurf reconstruction 4\n",
+constexpr std::string_view mark = "semsurf reconstruction 5\n",
                            correction_mark = "semsurf correction 1\n";
 
 /// Writes numbers as 8 bytes each, lowest first.
@@ -147,7 +147,7 @@ std::string pack(const ReconstructionState& state) {
   write(out, state.surface);
   const Affine& m = state.sem_to_afm;
   for (const double value : {m.xx, m.xy, m.x0, m.yx, m.yy, m.y0, state.offset, state.blur_px2,
-                             state.scan_drift_px.x, state.scan_drift_px.y})
+                             state.film_nm, state.scan_drift_px.x, state.scan_drift_px.y})
     out.number(value);
   out.numbers(state.gains);
   out.numbers(state.tip_change);
@@ -162,7 +162,7 @@ std::optional<ReconstructionState> unpack(const std::string& bytes) {
   state.surface = read_field(in);
   Affine& m = state.sem_to_afm;
   for (double* value : {&m.xx, &m.xy, &m.x0, &m.yx, &m.yy, &m.y0, &state.offset, &state.blur_px2,
-                        &state.scan_drift_px.x, &state.scan_drift_px.y})
+                        &state.film_nm, &state.scan_drift_px.x, &state.scan_drift_px.y})
     *value = in.number();
   state.gains = in.numbers();
   state.tip_change = in.numbers();

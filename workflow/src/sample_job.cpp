@@ -27,6 +27,8 @@
 #include "surf/io/tip_file.h"
 #include "surf/mc/request/scan_request.h"
 #include "surf/mc/simulate.h"
+#include "surf/mesh/height_field_mesh.h"
+#include "surf/mesh/vertex_normals.h"
 #include "surf/reconstruction/sample_surfaces.h"
 #include "surf/workflow/step_record.h"
 #include "surf/workflow/version.h"
@@ -70,6 +72,16 @@ const SampleScene& find_scene(const std::string& name) {
                        [&](const SampleScene& s) { return s.name == known; });
 }
 
+/// The detector that is there in place of SE's, or nothing.
+std::vector<mc::Detector> detector_of(const SampleJob& job) {
+  if (job.detector.empty()) return {};
+  std::vector<mc::Detector> all = mc::parse_detectors(job.detector, "`sample.detector`");
+  if (all.size() != 1)
+    throw UsageError("`sample.detector`", fmt::format("'{}' is more than one", job.detector),
+                     "Name one, as in-lens or side:axis=60deg/90deg");
+  return all;
+}
+
 void check(const SampleJob& job) {
   if (job.width < 16 || job.height < 16 || job.width > 4096 || job.height > 4096)
     throw UsageError("`sample.size`", fmt::format("{} x {} pixels", job.width, job.height),
@@ -85,6 +97,8 @@ void check(const SampleJob& job) {
     throw UsageError("`sample.tip_lean`",
                      fmt::format("the tip's half angle is {:g} degrees", half_angle_deg),
                      "Give less than that");
+  detector_of(job);
+  if (!job.film.empty()) io::find_material(job.film, "`sample.film`");
   for (const char* name : files) io::check_writable(job.folder / name);
 }
 
@@ -225,6 +239,14 @@ mc::Scan scan_of(const SampleJob& job, const SampleScene& scene) {
   return scan;
 }
 
+/// The surface, moved into the specimen along its normals.
+TriangleMesh below_film(TriangleMesh surface, double thickness_nm) {
+  const std::vector<Vec3> normals = vertex_normals(surface);
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    surface.vertices_nm[i] -= thickness_nm * normals[i];
+  return surface;
+}
+
 mc::Scene monte_carlo_scene(const SampleJob& job, const SampleScene& scene,
                             const SampleSurface& surface) {
   const double pitch = scene.sem_pixel_nm / per_pixel;
@@ -236,20 +258,17 @@ mc::Scene monte_carlo_scene(const SampleJob& job, const SampleScene& scene,
   mc::Specimen specimen;
   specimen.materials = {io::find_material(scene.material, "sample")};
   specimen.height_field = mc::HeightFieldBody{surface.name, std::move(field), 0, Edge::mirror};
+  if (!job.film.empty()) {
+    const HeightField& top = specimen.height_field->field;
+    specimen.bodies.push_back(
+        {scene.material, below_film(height_field_sheet(top), job.film_nm), 0});
+    specimen.materials.push_back(io::find_material(job.film, "`sample.film`"));
+    specimen.height_field->material = 1;
+  }
   mc::Beam beam;
   beam.energy_ev = scene.energy_ev;
   beam.spot_nm = job.spot_nm.value_or(scene.spot_nm);
   return mc::Scene(specimen, beam, scan_of(job, scene), job.physics);
-}
-
-/// The detector that is there in place of SE's, or nothing.
-std::vector<mc::Detector> detector_of(const SampleJob& job) {
-  if (job.detector.empty()) return {};
-  std::vector<mc::Detector> all = mc::parse_detectors(job.detector, "`sample.detector`");
-  if (all.size() != 1)
-    throw UsageError("`sample.detector`", fmt::format("'{}' is more than one", job.detector),
-                     "Name one, as in-lens or side:axis=60deg/90deg");
-  return all;
 }
 
 /// Displaces rows along themselves.
@@ -307,6 +326,8 @@ nlohmann::ordered_json truth_of(const SampleJob& job, const SampleScene& scene,
             {"physics", mc::format_physics(job.physics)},
             {"gain_drift", job.gain_drift},
             {"line_jitter_px", job.line_jitter_px},
+            {"film", job.film},
+            {"film_nm", job.film.empty() ? 0 : job.film_nm},
             {"detector", job.detector.empty() ? "SE" : job.detector},
             {"energy_ev", scene.energy_ev},
             {"spot_nm", job.spot_nm.value_or(scene.spot_nm)},
@@ -348,6 +369,7 @@ Identity identity_of(const SampleJob& job, const mc::SimulationOptions& options)
           {"physics", mc::format_physics(job.physics)},
           {"spot", format_exact(job.spot_nm.value_or(-1))},
           {"detector", job.detector},
+          {"film", fmt::format("{} {}", job.film, format_exact(job.film_nm))},
           {"tile_pixels", std::to_string(options.tile_pixels)},
           {"instruction set", std::string(instruction_set())},
           {"ray tracer", mc::ray_tracer_version()},
@@ -407,7 +429,7 @@ SampleSummary run(const SampleJob& job, const Reporter& reporter) {
   summary.afm_height = frame.height;
 
   mc::SimulationOptions options;
-  options.method = mc::Method::replay;
+  options.method = job.film.empty() ? mc::Method::replay : mc::Method::direct;
   options.budget = mc::ElectronsPerPixel{job.electrons};
   options.seed = job.seed;
   options.threads = job.threads;

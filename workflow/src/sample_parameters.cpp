@@ -61,6 +61,14 @@ void describe(ParameterVisitor& visit, SampleJob& job) {
                                "in-lens, side, or one of your own, as simulate reads it",
                        .otherwise = "all of them",
                        .form = "NAME"});
+  visit(job.film, {.name = "sample.film",
+                   .help = "Material of a film that covers the specimen",
+                   .otherwise = "none",
+                   .form = "MATERIAL"});
+  visit(job.film_nm, {.name = "sample.film_thickness",
+                      .help = "Thickness of this film",
+                      .unit = Unit::nm,
+                      .limits = within(0.1, 10)});
   visit(job.scan_drift_px,
         {.name = "sample.scan_drift",
          .help = "Displacement of the scan's first and last rows against its middle, in pixels of "

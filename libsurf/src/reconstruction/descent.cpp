@@ -141,12 +141,14 @@ void fit_few(const Objective& o, Unknowns& at, const Watch& watch) {
       for (int i = 0; i < of_mixture; ++i)
         for (std::size_t p = 0; p < state.sem->pull.size() && o.fits(i); ++p)
           g(of_map + i) += state.sem->pull.data()[p] * images[i].data()[p];
-      if (o.fit_blur) g(of_map + 2) += o.blur_precision * at.mixture.blur_px2;
+      const MixtureChange pull = o.mixture_pull(at.mixture), prior = o.mixture_precision();
+      for (int k = 0; k < of_mixture; ++k) g(of_map + k) += pull[static_cast<std::size_t>(k)];
       const auto precision = o.sem->mixture_precision(*state.sem, at.mixture);
       for (int i = 0; i < of_mixture; ++i)
         for (int k = 0; k < of_mixture; ++k)
           a(of_map + i, of_map + k) = !(o.fits(i) && o.fits(k)) ? i == k : precision[i][k];
-      if (o.fit_blur) a(of_map + 2, of_map + 2) += o.blur_precision;
+      for (int k = 0; k < of_mixture; ++k)
+        a(of_map + k, of_map + k) += prior[static_cast<std::size_t>(k)];
     }
     bool better = false;
     double fell = 0;

@@ -9,8 +9,25 @@ namespace surf::reconstruction {
 namespace {
 
 constexpr double largest_tip_change = 2;  // a factor of 7.4 of the slope
+constexpr double largest_film_nm = 5;
+
+/// By how much each number differs from what its prior expects.
+MixtureChange off_usual(const Mixture& at) {
+  return {0, 0, at.blur_px2, at.film_nm - usual_film_nm};
+}
 
 }  // namespace
+
+MixtureChange Objective::mixture_precision() const {
+  return {0, 0, fit_blur ? blur_precision : 0, fit_film ? film_precision : 0};
+}
+
+MixtureChange Objective::mixture_pull(const Mixture& at) const {
+  MixtureChange pull = off_usual(at);
+  const MixtureChange precision = mixture_precision();
+  for (std::size_t k = 0; k < pull.size(); ++k) pull[k] *= precision[k];
+  return pull;
+}
 
 double dot(const Step& a, const Step& b) {
   double sum = 0;
@@ -48,7 +65,9 @@ Objective::State Objective::evaluate(const Unknowns& at) const {
   if (fit_drift)
     s.prior_value +=
         0.5 * drift_precision * (at.drift_px.x * at.drift_px.x + at.drift_px.y * at.drift_px.y);
-  if (fit_blur) s.prior_value += 0.5 * blur_precision * at.mixture.blur_px2 * at.mixture.blur_px2;
+  const MixtureChange off = off_usual(at.mixture), precision = mixture_precision();
+  for (std::size_t k = 0; k < off.size(); ++k)
+    s.prior_value += 0.5 * precision[k] * off[k] * off[k];
   if (fit_tip)
     for (const double t : at.tip) s.prior_value += 0.5 * tip_precision * t * t;
   return s;
@@ -69,7 +88,8 @@ Step Objective::gradient(const Unknowns& at, const State& s) const {
     g.map[7] += drift_precision * at.drift_px.y;
   }
   hold(g.map);
-  if (fit_blur) g.mixture[2] += blur_precision * at.mixture.blur_px2;
+  const MixtureChange pull = mixture_pull(at.mixture);
+  for (std::size_t k = 0; k < pull.size(); ++k) g.mixture[k] += pull[k];
   hold(g.mixture);
   prior.evaluate(at.z_nm, &g.z_nm, nullptr);
   if (anchor_per_nm2 > 0)
@@ -96,7 +116,8 @@ Step Objective::product(const Unknowns& at, const State& s, const Step& v,
   for (int k = affine_numbers; k < map_numbers && fit_drift; ++k)
     out.map[k] += drift_precision * v.map[k];
   hold(out.map);
-  if (fit_blur) out.mixture[2] += blur_precision * v.mixture[2];
+  const MixtureChange precision = mixture_precision();
+  for (std::size_t k = 0; k < precision.size(); ++k) out.mixture[k] += precision[k] * v.mixture[k];
   hold(out.mixture);
   prior.add_product(s.prior_weights, v.z_nm, out.z_nm);
   if (anchor_per_nm2 > 0)
@@ -129,6 +150,8 @@ Unknowns Objective::moved(const Unknowns& at, const Step& step) const {
   if (fit_blur)
     next.mixture.blur_px2 =
         std::clamp(at.mixture.blur_px2 + step.mixture[2], least_blur_px2, largest_blur_px2);
+  if (fit_film)
+    next.mixture.film_nm = std::clamp(at.mixture.film_nm + step.mixture[3], 0.0, largest_film_nm);
   if (fit_tip)  // limited, because a long step must not give NaN
     for (int k = 0; k < tip_numbers; ++k)
       next.tip[k] = std::clamp(at.tip[k] + step.tip[k], -largest_tip_change, largest_tip_change);

@@ -11,6 +11,9 @@
 
 namespace surf::reconstruction {
 
+/// The film's thickness that the fit begins with.
+constexpr double usual_film_nm = 1;
+
 /// All unknowns of the fit.
 struct Unknowns {
   Grid<double> z_nm;  ///< on the surface's samples
@@ -46,6 +49,9 @@ class Objective {
   /// Whether the blur is fitted. Its prior: 0, with a deviation that a spot of half a pixel has.
   bool fit_blur = false;
   double blur_precision = 16;
+  /// Whether the film's thickness is fitted. Its prior: 1 nm, within 1 nm.
+  bool fit_film = false;
+  double film_precision = 1;
   /// Precision of a height about `start`, 1 / nm^2. It keeps the surface in place if there is no
   /// AFM image.
   double anchor_per_nm2 = 0;
@@ -71,8 +77,14 @@ class Objective {
                const SemTerm::Near* near = nullptr) const;
   Unknowns moved(const Unknowns& at, const Step& step) const;
   /// Whether a number of a change of the mixture is fitted.
-  bool fits(int mixture_number) const { return mixture_number == 2 ? fit_blur : fit_mixture; }
-  bool fits_mixture() const { return sem && (fit_mixture || fit_blur); }
+  bool fits(int mixture_number) const {
+    return mixture_number == 3 ? fit_film : mixture_number == 2 ? fit_blur : fit_mixture;
+  }
+  bool fits_mixture() const { return sem && (fit_mixture || fit_blur || fit_film); }
+  /// The priors of the numbers of a mixture: their precisions, 0 where none is or the number is not
+  /// fitted, and the derivatives of -log p.
+  MixtureChange mixture_precision() const;
+  MixtureChange mixture_pull(const Mixture& at) const;
   /// Zero where a number is not fitted.
   void hold(MixtureChange& change) const;
   void hold(MapChange& change) const;

@@ -50,7 +50,9 @@ void add_prior_pull(const Objective& o, const Objective::State& s, std::uint64_t
     for (double& v : r.z_nm.data()) v += std::sqrt(o.anchor_per_nm2) * normal();
   for (int k = affine_numbers; k < map_numbers && o.fit_drift; ++k)
     r.map[k] += std::sqrt(o.drift_precision) * normal();
-  if (o.fit_blur) r.mixture[2] += std::sqrt(o.blur_precision) * normal();
+  const MixtureChange of_mixture = o.mixture_precision();
+  for (std::size_t k = 0; k < of_mixture.size(); ++k)
+    if (of_mixture[k] > 0) r.mixture[k] += std::sqrt(of_mixture[k]) * normal();
   if (o.fit_tip)
     for (double& v : r.tip) v += std::sqrt(o.tip_precision) * normal();
 }
@@ -113,44 +115,13 @@ Step prior_bias(const Objective& o, const Unknowns& at, const Curvature& a, cons
 
 std::vector<double> deviations_of(const Objective& o, const Unknowns& at, const Curvature& a,
                                   const Step& bias, const std::vector<Step>& functions,
-                                  double reduction, const Watch& watch) {
+                                  const Watch& watch) {
   const auto product = [&](const Step& v) { return o.product(at, a.state, v, &a.near); };
   std::vector<double> out;
   for (const Step& f : functions) {
-    const double variance = dot(f, solve(o, product, *a.preconditioner, f, reduction, watch));
+    const double variance = dot(f, solve(o, product, *a.preconditioner, f, 0.05, watch));
     out.push_back(std::hypot(std::sqrt(std::max(variance, 0.0)), dot(f, bias)));
   }
-  return out;
-}
-
-std::vector<Step> map_functions(const Objective& o, const Unknowns& at) {
-  const SurfaceFrame& f = o.frame;
-  const Point2 middle{f.origin_x_nm + 0.5 * (f.width - 1) * f.pitch_nm,
-                      f.origin_y_nm + 0.5 * (f.height - 1) * f.pitch_nm};
-  const auto parts = [&](int number, double samples) {
-    Step step = o.zero();
-    step.map[static_cast<std::size_t>(number)] = samples;
-    const Affine map = o.moved(at, step).surface_to_afm;
-    const AffineParts p = parts_of(map);
-    const Point2 there = map(middle);
-    return MapChange{p.rotation_rad, p.scale_x, p.scale_y, p.shear, there.x, there.y};
-  };
-  std::vector<Step> out(affine_numbers, o.zero());
-  constexpr double samples = 1e-4;
-  for (int k = 0; k < affine_numbers; ++k) {
-    const MapChange up = parts(k, samples), down = parts(k, -samples);
-    for (std::size_t i = 0; i < affine_numbers; ++i)
-      out[i].map[static_cast<std::size_t>(k)] = (up[i] - down[i]) / (2 * samples);
-  }
-  return out;
-}
-
-std::vector<Step> few_functions(const Objective& o, const Unknowns& at) {
-  std::vector<Step> out =
-      o.fit_map ? map_functions(o, at) : std::vector<Step>(affine_numbers, o.zero());
-  out.resize(affine_numbers + 2 + tip_numbers, o.zero());
-  for (std::size_t k = 0; k < 2; ++k) out[affine_numbers + k].mixture[k] = 1;
-  for (std::size_t k = 0; k < tip_numbers; ++k) out[affine_numbers + 2 + k].tip[k] = 1;
   return out;
 }
 
@@ -162,8 +133,6 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
   const auto product = [&](const Step& v) { return o.product(at, state, v, &a.near); };
   const Grid<double> without_sem = GaussianBasis(0.8, threads).sum(a.height_nm2);
   Grid<double> drawn(o.frame.width, o.frame.height);
-  const std::vector<Step> few = few_functions(o, at);
-  std::vector<double> few_variances(few.size());
   for (int d = 0; d < draws; ++d) {
     watch.report(draws + d, 2 * draws);
     Step r = data_pull(o, at, state, &a.near, seed + static_cast<std::uint64_t>(d));
@@ -171,31 +140,14 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
     const Step x = solve(o, product, m, r, 0.05, watch);
     for (std::size_t i = 0; i < drawn.size(); ++i)
       drawn.data()[i] += x.z_nm.data()[i] * x.z_nm.data()[i] / draws;
-    for (std::size_t k = 0; k < few.size(); ++k)
-      few_variances[k] += std::pow(dot(few[k], x), 2) / draws;
   }
   const GaussianBasis around(around_px, threads);
   const Grid<double> mean = around.sum(drawn), expected = around.sum(without_sem);
-  const Step whole_bias = prior_bias(o, at, a, watch);
-  Grid<double> bias = whole_bias.z_nm;
+  Grid<double> bias = prior_bias(o, at, a, watch).z_nm;
   for (double& b : bias.data()) b *= b;
   bias = around.sum(bias);
   Posterior out{Grid<double>(o.frame.width, o.frame.height),
-                Grid<unsigned char>(o.frame.width, o.frame.height),
-                {}};
-  std::vector<double> d;
-  for (std::size_t k = 0; k < few.size(); ++k)
-    d.push_back(std::hypot(std::sqrt(few_variances[k]), dot(few[k], whole_bias)));
-  // Draws end before the map has settled, which makes its deviations half of what they are: its
-  // part of the preconditioner knows nothing of the surface.
-  if (o.fit_map) {
-    const std::vector<double> map =
-        deviations_of(o, at, a, whole_bias, map_functions(o, at), 0.5, watch);
-    std::ranges::copy(map, d.begin());
-  }
-  out.unknowns = {
-      {d[0], d[1], d[2], d[3], d[4], d[5]}, d[affine_numbers], d[affine_numbers + 1], {}};
-  if (o.fit_tip) out.unknowns.tip_change.assign(d.begin() + affine_numbers + 2, d.end());
+                Grid<unsigned char>(o.frame.width, o.frame.height)};
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     const double ratio = mean.data()[i] / expected.data()[i];
     out.deviation_nm.data()[i] = std::sqrt(without_sem.data()[i] * ratio + bias.data()[i]);

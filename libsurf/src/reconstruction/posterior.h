@@ -15,7 +15,6 @@ struct Posterior {
   /// Posterior standard deviation; map and mixture are free if they are fitted.
   Grid<double> deviation_nm;
   Grid<unsigned char> data_support;  ///< see Reconstruction
-  UnknownDeviations unknowns;        ///< of map, gains, offset and tip
 };
 
 /// The second derivative A at the end of the fit, and what solves with it.
@@ -36,20 +35,10 @@ Step prior_bias(const Objective& objective, const Unknowns& at, const Curvature&
 
 /// The posterior standard deviation of each linear function of the unknowns, which is given by its
 /// derivatives c. Its square is c.A^-1 c, which costs a solution of the linear system, and the
-/// square of c.bias. The error of c.A^-1 c is of second order: residuals that have fallen to half
-/// (`reduction`) give it to 4 %.
+/// square of c.bias.
 std::vector<double> deviations_of(const Objective& objective, const Unknowns& at,
                                   const Curvature& curvature, const Step& bias,
-                                  const std::vector<Step>& functions, double reduction,
-                                  const Watch& watch);
-
-/// The derivatives of the map's parts, in the order of AffineParts; the shift is that of the middle
-/// of the surface.
-std::vector<Step> map_functions(const Objective& objective, const Unknowns& at);
-
-/// Those of the map's parts, of the common factor of the gains, of the offset, and of the tip's
-/// numbers.
-std::vector<Step> few_functions(const Objective& objective, const Unknowns& at);
+                                  const std::vector<Step>& functions, const Watch& watch);
 
 /// The posterior standard deviations, linearised: the average over draws from N(0, A^-1). Each draw
 /// costs as much as a solution of the linear system, so there are few, and their estimate scatters

@@ -230,7 +230,8 @@ void Preconditioner::factor(const Objective& o, const Unknowns& at, const Object
     for (int i = 0; i < mixture_numbers; ++i)
       for (int k = 0; k < mixture_numbers; ++k)
         if (o.fits(i) && o.fits(k)) block(i, k) = 0.5 * (precision[i][k] + precision[k][i]);
-    if (o.fit_blur) block(2, 2) += o.blur_precision;
+    const MixtureChange prior = o.mixture_precision();
+    for (int k = 0; k < mixture_numbers; ++k) block(k, k) += prior[static_cast<std::size_t>(k)];
     block.diagonal().array() *= 1 + 1e-9;
     few.mixture.compute(block);
   }

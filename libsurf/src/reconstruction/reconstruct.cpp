@@ -125,7 +125,8 @@ class Work {
     start_ = at_.z_nm;
     if (sem) {
       objective_.sem.emplace(*sem, frame, margin_, margin_, options.threads);
-      at_.mixture = {sem->gains, sem->offset};
+      at_.mixture = {sem->gains, sem->offset, 0, sem->film ? usual_film_nm : 0};
+      objective_.fit_film = sem->film.has_value();
     }
     objective_.fit_map = afm && sem && options.refine_transform;
     objective_.fit_drift = objective_.fit_map && options.refine_drift;
@@ -167,7 +168,7 @@ class Work {
                 at_.tip.begin());
     erode_again();
     if (sem_) {
-      at_.mixture = {s.gains, s.offset, s.blur_px2};
+      at_.mixture = {s.gains, s.offset, s.blur_px2, s.film_nm};
     }
     reports_ = s.scales;
     if (!reports_.empty()) set_prior(reports_.back().curvature_prior_per_nm);
@@ -184,6 +185,7 @@ class Work {
       s.gains = at_.mixture.gains;
       s.offset = at_.mixture.offset;
       s.blur_px2 = at_.mixture.blur_px2;
+      s.film_nm = at_.mixture.film_nm;
     }
     if (objective_.fit_tip) s.tip_change.assign(at_.tip.begin(), at_.tip.end());
     return s;
@@ -358,6 +360,7 @@ class Work {
     out.gains = last.gains;
     out.offset = last.offset;
     out.blur_px2 = last.blur_px2;
+    out.film_nm = last.film_nm;
     out.scan_drift_px = at_.drift_px;
     const Objective::State s = objective_.evaluate(at_);
     if (s.afm) {
@@ -391,7 +394,6 @@ class Work {
       add(common_doubts(), out.surface, cut(GaussianBasis(soft_px, options_.threads).sum(at_.z_nm)),
           at_.surface_to_afm, out.deviation_nm);
       out.data_support = cut(p.data_support);
-      out.unknown_deviations = p.unknowns;
     }
     return out;
   }

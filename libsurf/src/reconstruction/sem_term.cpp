@@ -7,6 +7,7 @@
 #include "afm/normal_numbers.h"
 #include "gaussian_basis.h"
 #include "spot_blur.h"
+#include "surf/sem/film_model.h"
 
 namespace surf::reconstruction {
 namespace {
@@ -16,9 +17,10 @@ constexpr double soft_px = 1.5;  // over which grey levels are averaged to tell 
 }  // namespace
 
 SemTerm::SemTerm(const SemData& data, const SurfaceFrame& frame, int left, int below, int threads)
-    : model_(data.model), frame_(frame), noise_(data.noise),
+    : model_(data.model), film_(data.film.has_value()), frame_(frame), noise_(data.noise),
       channels_(data.model->channels().size()), image_(frame.width, frame.height),
       used_(frame.width, frame.height) {
+  if (film_) model_ = std::make_shared<FilmModel>(data.model, *data.film);
   options_.threads = threads;
   for (int y = 0; y < data.image.values.height(); ++y)
     for (int x = 0; x < data.image.values.width(); ++x) {
@@ -46,18 +48,30 @@ SemTerm::SemTerm(const SemData& data, const SurfaceFrame& frame, int left, int b
   factor_ = discrepancy_->factor(weight);
 }
 
-Grid<double> SemTerm::mixed(const ModelImages& images, const Mixture& mixture) const {
+std::vector<double> SemTerm::gains_of(const Mixture& mixture) const {
+  std::vector<double> gains = mixture.gains;
+  for (std::size_t c = 0; c < channels_ && film_; ++c)
+    gains.push_back(mixture.film_nm * mixture.gains[c]);
+  return gains;
+}
+
+Grid<double> SemTerm::mixed(const ModelImages& images, const std::vector<double>& gains) const {
   Grid<double> out(frame_.width, frame_.height);
-  for (std::size_t c = 0; c < channels_; ++c)
-    for (std::size_t i = 0; i < out.size(); ++i)
-      out.data()[i] += mixture.gains[c] * images[c].data()[i];
+  for (std::size_t c = 0; c < gains.size(); ++c)
+    for (std::size_t i = 0; i < out.size(); ++i) out.data()[i] += gains[c] * images[c].data()[i];
   return out;
+}
+
+Grid<double> SemTerm::change_by_film(const State& s, const Mixture& mixture) const {
+  std::vector<double> gains(channels_);
+  if (film_) gains.insert(gains.end(), mixture.gains.begin(), mixture.gains.end());
+  return mixed(s.linear->images(), gains);
 }
 
 SemTerm::State SemTerm::evaluate(const Grid<double>& z, const Mixture& mixture) const {
   State s;
   s.linear = model_->linearize(frame_.field(z), options_);
-  s.sharp = mixed(s.linear->images(), mixture);
+  s.sharp = mixed(s.linear->images(), gains_of(mixture));
   s.simulated = blurred(s.sharp, mixture.blur_px2);
   for (double& v : s.simulated.data()) v += mixture.offset;
   if (!discrepancy_) {
@@ -93,9 +107,9 @@ void SemTerm::add_gradient(const State& s, const Mixture& mixture, const Grid<do
   } else {
     const Grid<double> sharp = blurred(weights, mixture.blur_px2);  // the blur is symmetric
     ModelImages w;
-    for (std::size_t c = 0; c < channels_; ++c) {
+    for (const double gain : gains_of(mixture)) {
       w.push_back(sharp);
-      for (double& v : w.back().data()) v *= mixture.gains[c];
+      for (double& v : w.back().data()) v *= gain;
     }
     const Grid<double> gradient = s.linear->gradient(w);
     for (std::size_t i = 0; i < out.size(); ++i) out.data()[i] += gradient.data()[i];
@@ -112,7 +126,9 @@ std::array<Grid<double>, mixture_numbers> SemTerm::mixture_images(const State& s
   Grid<double> by_gain = s.simulated;
   for (double& v : by_gain.data()) v -= mixture.offset;
   return {std::move(by_gain), Grid<double>(frame_.width, frame_.height, 1.0),
-          change_of_blur(s.sharp, mixture.blur_px2)};
+          change_of_blur(s.sharp, mixture.blur_px2),
+          film_ ? blurred(change_by_film(s, mixture), mixture.blur_px2)
+                : Grid<double>(frame_.width, frame_.height)};
 }
 
 Grid<double> SemTerm::change(const State& s, const Mixture& mixture, const Grid<double>& dz,
@@ -122,18 +138,17 @@ Grid<double> SemTerm::change(const State& s, const Mixture& mixture, const Grid<
     for (int y = 0; y < frame_.height; ++y)
       for (int x = 0; x < frame_.width; ++x) out(x, y) += near->change(dz, x, y);
   } else {
-    const ModelImages d = s.linear->change(dz);
-    for (std::size_t c = 0; c < channels_; ++c)
-      for (std::size_t i = 0; i < out.size(); ++i)
-        out.data()[i] += mixture.gains[c] * d[c].data()[i];
-    out = blurred(out, mixture.blur_px2);
+    out = blurred(mixed(s.linear->change(dz), gains_of(mixture)), mixture.blur_px2);
   }
   for (std::size_t i = 0; i < out.size(); ++i)
     out.data()[i] +=
         mixture_change[0] * (s.simulated.data()[i] - mixture.offset) + mixture_change[1];
-  if (mixture_change[2] == 0) return out;
-  const Grid<double> wider = change_of_blur(s.sharp, mixture.blur_px2);
-  for (std::size_t i = 0; i < out.size(); ++i) out.data()[i] += mixture_change[2] * wider.data()[i];
+  const auto add = [&](double factor, const Grid<double>& image) {
+    for (std::size_t i = 0; i < out.size(); ++i) out.data()[i] += factor * image.data()[i];
+  };
+  if (mixture_change[2] != 0) add(mixture_change[2], change_of_blur(s.sharp, mixture.blur_px2));
+  if (film_ && mixture_change[3] != 0)
+    add(mixture_change[3], blurred(change_by_film(s, mixture), mixture.blur_px2));
   return out;
 }
 

@@ -19,12 +19,13 @@ struct Mixture {
   double offset = 0;
   /// By how much the real spot's variance along each axis exceeds the model's, in squared pixels.
   double blur_px2 = 0;
+  double film_nm = 0;  ///< thickness of the film, if there is one
 };
 
-/// A change of the mixture: the relative change of all gains, the change of the offset, and of the
-/// blur. The gains keep their ratios, because channels are so alike that their gains would
-/// compensate errors of the model (docs/methods/calibration.md).
-constexpr int mixture_numbers = 3;
+/// A change of the mixture: the relative change of all gains, the change of the offset, of the blur
+/// and of the film's thickness. The gains keep their ratios, because channels are so alike that
+/// their gains would compensate errors of the model (docs/methods/calibration.md).
+constexpr int mixture_numbers = 4;
 using MixtureChange = std::array<double, mixture_numbers>;
 
 /// The likelihood of the SEM image, given a surface: the mixed channels of the model, and the
@@ -82,15 +83,21 @@ class SemTerm {
   Grid<double> draw_precision(const State& state, std::uint64_t seed) const;
 
   std::size_t channels() const { return channels_; }
+  bool has_film() const { return film_; }
   const Grid<double>& image() const { return image_; }  ///< on the surface's samples
   const Mask& used() const { return used_; }
   std::int64_t used_pixels() const { return used_pixels_; }
   const SemNoise& noise() const { return noise_; }
 
  private:
-  Grid<double> mixed(const ModelImages& images, const Mixture& mixture) const;
+  /// The gain of each channel of `model_`.
+  std::vector<double> gains_of(const Mixture& mixture) const;
+  Grid<double> mixed(const ModelImages& images, const std::vector<double>& gains) const;
+  /// What 1 nm of film changes in the image without blur.
+  Grid<double> change_by_film(const State& state, const Mixture& mixture) const;
 
-  std::shared_ptr<const ImageModel> model_;
+  std::shared_ptr<const ImageModel> model_;  // with twice the channels if there is a film
+  bool film_ = false;
   SurfaceFrame frame_;
   SemNoise noise_;
   ModelOptions options_;

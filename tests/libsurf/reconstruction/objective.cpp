@@ -32,14 +32,17 @@ Objective make_objective(const test::SmallScene& scene, Images which) {
   }
   o.fit_tip = with_afm;
   o.fit_blur = with_sem;
+  o.fit_film = o.sem && o.sem->has_film();
   o.fit_drift = o.fit_map;
   return o;
 }
 
+const FilmEffect some_film{"C", {{0.2, -0.5, 0.1}}};
+
 Unknowns start_at(const test::SmallScene& scene, const Objective& o) {
   Unknowns at{
       on_frame(eroded(scene.afm, 1), o.frame, scene.sem.sem_to_afm), scene.sem.sem_to_afm, {}};
-  if (o.sem) at.mixture = {{90}, 25, 0.2};
+  if (o.sem) at.mixture = {{90}, 25, 0.2, 0.7};
   if (o.fit_tip) at.tip = {0.2, -0.1, 0.15, 0.05, -0.2, 0.1, 0.3};
   // An eroded scan touches the tip in several places at once, where there is no derivative.
   RandomStream random(31, 0, 0);
@@ -86,6 +89,7 @@ TEST(Objective, GradientIsThatOfCentralDifferencesWithEachImageAndBoth) {
 
 TEST(Objective, GradientHoldsWithADiscrepancy) {
   test::SmallScene scene;
+  scene.sem.film = some_film;
   scene.sem.discrepancy = usual_discrepancy(scene.sem.image, 0.3);
 
   const Objective o = make_objective(scene, Images::sem);
@@ -99,7 +103,8 @@ TEST(Objective, GradientHoldsWithADiscrepancy) {
 }
 
 TEST(Objective, GradientHoldsForEachNumberOfMapMixtureAndTipAlone) {
-  const test::SmallScene scene;
+  test::SmallScene scene;
+  scene.sem.film = some_film;
   const Objective o = make_objective(scene, Images::both);
   const Unknowns at = start_at(scene, o);
   for (int k = 0; k < map_numbers; ++k) {

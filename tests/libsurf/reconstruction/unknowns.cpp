@@ -56,6 +56,22 @@ TEST(Unknowns, ASpotThatIsWiderThanTheModelsIsFound) {
   EXPECT_NEAR(reconstruct(&scene.afm, &scene.sem, o).blur_px2, 0.8, 0.25);
 }
 
+TEST(Unknowns, AFilmThatChangesWallsMoreThanPlateausIsFound) {
+  test::SmallScene scene(5, 64, 48, 0.5);
+  const FilmEffect film{"C", {{0.02, 0.1, -0.2}}};
+  const ModelImages images = FilmModel(scene.sem.model, film).predict(scene.truth);
+  for (std::size_t i = 0; i < images[1].size(); ++i)
+    scene.sem.image.values.data()[i] += 100 * 2 * images[1].data()[i];
+  ReconstructionOptions o = quick();
+  o.refine_calibration = false;  // another gain and offset would do nearly the same
+  const Reconstruction without = reconstruct(&scene.afm, &scene.sem, o);
+  EXPECT_EQ(without.film_nm, 0);
+  scene.sem.film = film;
+  const Reconstruction with = reconstruct(&scene.afm, &scene.sem, o);
+  EXPECT_NEAR(with.film_nm, 2, 0.3);
+  EXPECT_LT(scene.rms_error(with.surface), scene.rms_error(without.surface));
+}
+
 /// Rows that are displaced by up to a pixel.
 TEST(Unknowns, DisplacedLinesOfTheImageAreFoundRowByRow) {
   test::SmallScene scene(5, 64, 48, 0.5);

@@ -16,6 +16,7 @@
 #include "surf/core/parameters.h"
 #include "surf/core/placed_image.h"
 #include "surf/core/progress.h"
+#include "surf/sem/film_model.h"
 #include "surf/sem/image_model.h"
 #include "surf/sem/sem_noise.h"
 
@@ -64,6 +65,8 @@ struct SemData {
   /// (see `line_jitter`). Each row's displacement, in deviations, is standard normal and eliminated
   /// with the discrepancy. Empty: rows are where they belong.
   Grid<double> row_jitter = {};
+  /// A film on the specimen, whose thickness is fitted. Absent: there is none.
+  std::optional<FilmEffect> film = {};
 };
 
 enum class ReconstructionMethod {
@@ -152,7 +155,7 @@ struct ReconstructionState {
   HeightField surface;
   Affine sem_to_afm;
   std::vector<double> gains;
-  double offset = 0, blur_px2 = 0;
+  double offset = 0, blur_px2 = 0, film_nm = 0;
   std::vector<ScaleReport> scales;  ///< the finished scales
   std::vector<double> tip_change;   ///< change from the given tip; empty: not fitted
   Point2 scan_drift_px{};
@@ -168,20 +171,6 @@ class ReconstructionJournal {
   virtual void keep(const ReconstructionState& state) = 0;
 };
 
-/// Posterior standard deviations of the unknowns other than heights, linearised like those of the
-/// heights and with the bias by the prior, but without the tilt and the displacement of walls that
-/// are added to heights. All but those of the map are from as many draws as `probes`: six tell them
-/// to within 30 %. 0: not fitted.
-struct UnknownDeviations {
-  /// Of each part of the map from SEM to AFM; the shift is that of the SEM image's middle.
-  AffineParts sem_to_afm{0, 0, 0, 0, 0, 0};
-  double gain_factor = 0;  ///< of the common factor of all gains, about 1
-  double offset = 0;       ///< in the SEM image's unit
-  /// Of each number of ReconstructionState::tip_change: natural logarithms of factors of the tip's
-  /// slope. Empty: not fitted.
-  std::vector<double> tip_change;
-};
-
 struct Reconstruction {
   /// In the SEM's frame and on its pixels, with the AFM's heights. With AFM data only: on the
   /// scan's samples.
@@ -192,6 +181,8 @@ struct Reconstruction {
   /// By how much the real spot's variance along each axis exceeds the model's, in squared pixels,
   /// -0.4 to 2; 0: not fitted.
   double blur_px2 = 0;
+  /// Likeliest thickness of the film, 0 to 5 nm; 0 as well without `SemData::film`.
+  double film_nm = 0;
   /// What a scan that drifts unsteadily is displaced by, in pixels of the surface: 2/3 of it at the
   /// ends of the part in use, along the longer side, and -1/3 in the middle; 0: not fitted.
   Point2 scan_drift_px{};
@@ -216,7 +207,6 @@ struct Reconstruction {
   /// The data that support each height. 1: the tip touched it. 2: the SEM image at least halves the
   /// variance of the height. 3: both. 0: only its neighbours and the prior.
   Grid<unsigned char> data_support;
-  UnknownDeviations unknown_deviations;  ///< all 0 if the uncertainty is not wanted
   std::vector<ScaleReport> scales;
   bool converged = true;
   /// For people; if there are any, look before you trust the result.

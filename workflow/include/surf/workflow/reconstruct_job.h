@@ -35,6 +35,10 @@ struct ReconstructJob {
   double model_error = 0.05;
   /// Standard deviation of displacements of the SEM image's rows along themselves, in pixels.
   double line_jitter_px = 0;
+  /// Material of a film on the specimen, whose thickness is fitted in place of gains and offset,
+  /// which must be given: a built-in material or one from these files. Empty: there is no film.
+  std::string film;
+  std::vector<std::string> material_files;
   /// Rounds in which Monte Carlo images of the surface correct the model, and their electrons per
   /// pixel. Models of other signals than SE and BSE cannot be corrected.
   int corrections = 2;

@@ -65,6 +65,9 @@ struct SampleJob {
   /// pixels of the SEM image more at its ends than in the middle; and rows of the SEM image that
   /// are displaced along themselves by normal numbers of this deviation, in pixels.
   double scan_drift_px = 0, line_jitter_px = 0;
+  /// Nor this: a film of this material and thickness, everywhere, under the true surface.
+  std::string film;
+  double film_nm = 2;
   int threads = 0;               ///< 0: one per hardware thread. Does not change the result
   std::filesystem::path cache;   ///< where libraries of cascades are stored; empty: nowhere
   CheckpointOptions checkpoint;  ///< for the SEM image; by default the file is beside sem.tif
