@@ -55,13 +55,6 @@ void print_line(const std::string& label, const std::string& text) {
   print("{:<10} {}\n", label, text);
 }
 
-void print_work(const workflow::SampleJob& job) {
-  print_note(fmt::format(
-      "simulating {} x {} pixels of {} primaries, {} in all, with cascades from a library of {}",
-      job.width, job.height, job.electrons,
-      format_count(double(job.electrons) * job.width * job.height), job.cascades));
-}
-
 /// Where there is no bar to show it: one line, as soon as the speed is known.
 class TimeLeft {
  public:
@@ -108,7 +101,6 @@ int sample(const Options& o) {
     JobReporter reporter(o.quiet);
     const bool told = !o.quiet && !isatty(fileno(messages()));
     TimeLeft left(told, "the SEM image"), library_left(told, "the library");
-    if (!o.quiet) print_work(job);
     workflow::Reporter also = reporter;
     also.on_progress = [&](double done, double total, std::string_view things) {
       reporter->progress(done, total, things);

@@ -163,10 +163,23 @@ TEST_F(CorrectedReconstruction, AFilmThatIsNotThereHasNoThickness) {
   EXPECT_THAT(report("result")["repeat"].get<std::string>(), HasSubstr("--film SiO2"));
 }
 
+TEST_F(CorrectedReconstruction, AFilmThatWouldBeTooThickIsDoubted) {
+  job_.film = "SiO2";
+  job_.calibration = {{20, 20}, 20};  // a fifth of the true gains
+  job_.corrections = 0;
+  job_.options.uncertainty = false;
+  const ReconstructSummary s = run(job_);
+  EXPECT_EQ(s.result.film_nm, largest_film_nm);
+  EXPECT_THAT(s.reasons, Contains(HasSubstr("thicker than the 5.00 nm")));
+}
+
 TEST_F(ReconstructJobTest, AFilmNeedsKnownGainsAndAKnownMaterial) {
   job_.film = "SiO2";
   EXPECT_THAT([&] { run(job_); }, ThrowsMessage<UsageError>(HasSubstr("reconstruction.gains")));
   job_.calibration = {{100, 100}, 20};
+  job_.film = "unobtainium";
+  EXPECT_THAT([&] { run(job_); }, ThrowsMessage<UsageError>(HasSubstr("unobtainium")));
+  job_.film = "SiO2";
   TrainedModel model = io::read_model(path("si.json"));
   model.scope.material = "somebody's own";
   io::write_model(path("si.json"), model);

@@ -268,7 +268,8 @@ TEST(SampleJob, KeepsTheSimulationWhereItsFilesCannotBeWritten) {
                          .on_note = [&](const std::string& note) { notes.push_back(note); }}),
                FileError);
   EXPECT_THAT(notes,
-              testing::ElementsAre(testing::HasSubstr("the same command goes on from there")));
+              testing::ElementsAre(testing::HasSubstr("simulating"),
+                                   testing::HasSubstr("the same command goes on from there")));
   fs::remove_all(folder.path() / "truth.gsf");
   EXPECT_TRUE(run(job).complete);
 }

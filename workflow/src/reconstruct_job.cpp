@@ -99,6 +99,13 @@ Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const S
   return id;
 }
 
+mc::Material film_material(const ReconstructJob& job) {
+  io::MaterialLibrary materials;
+  std::vector<std::string> notes;
+  for (const std::string& file : job.material_files) materials.read(file, notes);
+  return materials.find(job.film, "`reconstruction.film`");
+}
+
 void check(const ReconstructJob& job) {
   if (!job.afm && !job.sem)
     throw UsageError("reconstruct", "neither a scan nor an SEM image is given",
@@ -118,6 +125,7 @@ void check(const ReconstructJob& job) {
                      "thickness is known only where gains and offset are",
                      "Say `reconstruction.gains` and `reconstruction.offset`, or leave the film "
                      "to the gains, which cost no accuracy");
+  if (!job.film.empty()) film_material(job);
   check_parameters(parameters_of(job));
   if (job.sem) validate(job.sem->image, "SEM image");
   if (job.picture && !job.folder.empty()) io::check_plot_target(job.folder / "panel.png");
@@ -166,6 +174,11 @@ std::vector<std::string> reasons_of(const ReconstructSummary& s) {
           "the model and the calibration",
           seen(last.sem_residual)));
   }
+  if (r.film_nm >= largest_film_nm)
+    reasons.push_back(
+        fmt::format("the film would be thicker than the {} that are sought: check its material, "
+                    "`reconstruction.gains` and `reconstruction.offset`",
+                    format_length(largest_film_nm)));
   if (s.afm && !s.afm->tip.doubt.empty())
     reasons.push_back(fmt::format("the AFM tip is not to be trusted: {}", s.afm->tip.doubt));
   if (s.rival)
@@ -252,9 +265,6 @@ std::optional<CorrectionRequest> correction_request(const ReconstructJob& job,
 
 /// What the film that is asked for changes in the yields.
 FilmEffect film_of(const ReconstructJob& job, const ReconstructSummary& s, const Reporter& told) {
-  io::MaterialLibrary materials;
-  std::vector<std::string> notes;
-  for (const std::string& file : job.material_files) materials.read(file, notes);
   const std::optional<CorrectionRequest> known = correction_request(job, s);
   if (!known)
     throw UsageError("`reconstruction.film`",
@@ -263,7 +273,7 @@ FilmEffect film_of(const ReconstructJob& job, const ReconstructSummary& s, const
                      "Leave it out, or give a model that `semsurf train` made");
   begin(told, "film");
   FilmRequest request;
-  request.film = materials.find(job.film, "`reconstruction.film`");
+  request.film = film_material(job);
   request.specimen = known->material;
   request.energy_ev = s.model->trained.scope.energy_ev;
   request.physics = known->physics;

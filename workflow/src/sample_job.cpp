@@ -422,6 +422,12 @@ SampleSummary run(const SampleJob& job, const Reporter& reporter) {
   const SampleScene& scene = find_scene(job.name);
   const SampleSurface& surface = find_sample_surface(job.name);
   check(job);
+  const double millions = 1e-6 * static_cast<double>(job.electrons) * job.width * job.height;
+  reporter.note(fmt::format(
+      "simulating {} x {} pixels of {} primaries, {}{}", job.width, job.height, job.electrons,
+      millions >= 1 ? fmt::format("{:.3g} million in all, ", millions) : "",
+      job.film.empty() ? fmt::format("with cascades from a library of {}", job.cascades)
+                       : "each followed on its own, because of the film"));
   const AfmFrame frame = afm_frame(job, scene);
   SampleSummary summary;
   summary.sem_to_afm = frame.sem_to_afm;

@@ -9,7 +9,6 @@ namespace surf::reconstruction {
 namespace {
 
 constexpr double largest_tip_change = 2;  // a factor of 7.4 of the slope
-constexpr double largest_film_nm = 5;
 
 /// By how much each number differs from what its prior expects.
 MixtureChange off_usual(const Mixture& at) {

@@ -171,6 +171,9 @@ class ReconstructionJournal {
   virtual void keep(const ReconstructionState& state) = 0;
 };
 
+/// The thickest film that is sought: what it changes is known to first order.
+constexpr double largest_film_nm = 5;
+
 struct Reconstruction {
   /// In the SEM's frame and on its pixels, with the AFM's heights. With AFM data only: on the
   /// scan's samples.
@@ -181,7 +184,7 @@ struct Reconstruction {
   /// By how much the real spot's variance along each axis exceeds the model's, in squared pixels,
   /// -0.4 to 2; 0: not fitted.
   double blur_px2 = 0;
-  /// Likeliest thickness of the film, 0 to 5 nm; 0 as well without `SemData::film`.
+  /// Likeliest thickness of the film, 0 to `largest_film_nm`; 0 as well without `SemData::film`.
   double film_nm = 0;
   /// What a scan that drifts unsteadily is displaced by, in pixels of the surface: 2/3 of it at the
   /// ends of the part in use, along the longer side, and -1/3 in the middle; 0: not fitted.

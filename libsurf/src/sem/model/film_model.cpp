@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "model_input.h"
 #include "padded_field.h"
 #include "surf/core/error.h"
 
@@ -55,7 +56,7 @@ class FilmLinearization final : public Linearization {
   const ModelImages& images() const override { return images_; }
 
   Grid<double> gradient(const ModelImages& weights) const override {
-    check_weights(weights);
+    check_weights(weights, images_.size(), images_.front());
     ModelImages plain(weights.begin(), weights.begin() + static_cast<std::ptrdiff_t>(half()));
     Grid<double> by_x = field_.none(), by_y = by_x;
     for (std::size_t c = 0; c < half(); ++c) {
@@ -90,13 +91,6 @@ class FilmLinearization final : public Linearization {
 
  private:
   std::size_t half() const { return changes_.size(); }
-  void check_weights(const ModelImages& weights) const {
-    if (weights.size() != images_.size())
-      throw InvalidInput("weights", "there is not one image per channel", "Give 0 where none is");
-    for (const Grid<double>& w : weights)
-      if (w.width() != field_.width() || w.height() != field_.height())
-        throw InvalidInput("weights", "an image has another size than the field", "Give its size");
-  }
 
   std::unique_ptr<Linearization> model_;
   PaddedField field_;
