@@ -42,6 +42,7 @@ std::span<const Sweep> sweeps() {
       slivers(),
       thin_features(),
       guided_detail(),
+      guided_sparse(),
       tip_threshold(),
       tip_two_peaks(),
       training_pixels(),

@@ -39,6 +39,7 @@ Sweep registration_start();
 Sweep registration_turn();
 Sweep slivers();
 Sweep guided_detail();
+Sweep guided_sparse();
 Sweep thin_features();
 Sweep tip_threshold();
 Sweep tip_two_peaks();

@@ -9,7 +9,6 @@
 namespace surf::guided {
 namespace {
 
-constexpr double pilot_sigma_px = 1.5;
 // A secondary electron often comes with another: the square mean of a counted primary, for the
 // least mean that can be told from 0.
 constexpr double least_share = 1e-3;  // of the region's mean

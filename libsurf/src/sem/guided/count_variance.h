@@ -46,6 +46,8 @@ struct CountVariance {
   double of_one(double mean) const;
 };
 
+constexpr double pilot_sigma_px = 1.5;
+
 /// Means over a few pixels, to weigh counts by and to fit variances against.
 std::vector<double> pilot_means(const RegionCounts& counts);
 

@@ -30,10 +30,16 @@ constexpr double unguided_bias = 0.5;  // where windows are all there is
 constexpr double most_variance_scale = 4;
 constexpr double detail_sigma_px = 1.5;
 constexpr double detail_ranks[detail_classes] = {0.5, 0.85, 0.97};  // of the middle of each class
+constexpr std::array<double, 2> peak_contrast{1.5, 2.5};    // of counts over those around: none, full
+constexpr std::array<double, 2> peak_deviations{4, 6};  // and by how many of their deviations
 constexpr double risk_sigma_px = 5;  // of the pixels whose risk is averaged
 // A pixel that differs from its estimate by more than this many standard deviations of its counts
 // keeps what is beyond (Efron and Morris 1972, doi:10.1080/01621459.1972.10481215).
 constexpr double most_deviations = 4;
+// Few counts scatter upward more than so: what has a variance of slope * mean exceeds its mean by
+// this many slopes more (Cornish and Fisher 1938, doi:10.2307/1400905: (z^2 - 1) / 6 of the third
+// cumulant over the second).
+constexpr double skewness_share = (most_deviations * most_deviations - 1) / 6;
 
 void check(const CountImage& counts, const std::vector<Guide>& guides, const Grid<int>& region) {
   const int width = counts[0].primaries.width(), height = counts[0].primaries.height();
@@ -104,6 +110,10 @@ void add_guides(const std::vector<Guide>& guides, bool of_counts, GuidedRegion& 
   }
 }
 
+double ramp(double value, const std::array<double, 2>& from_to) {
+  return std::clamp((value - from_to[0]) / (from_to[1] - from_to[0]), 0.0, 1.0);
+}
+
 /// How sharply the guides bend at each pixel, by its rank among the region's pixels.
 void set_detail(GuidedRegion& r) {
   const GaussianWindow window(detail_sigma_px);
@@ -129,6 +139,27 @@ void set_detail(GuidedRegion& r) {
     while (c + 2 < detail_classes && rank > detail_ranks[c + 1]) ++c;
     r.detail[i] = std::clamp(c + (rank - detail_ranks[c]) / (detail_ranks[c + 1] - detail_ranks[c]),
                              0.0, detail_classes - 1.0);
+  }
+}
+
+/// Counts that stand out of those around in full are as sharp a detail as there is, whatever the
+/// guides say: windows that suit the many dark pixels around would level the few bright ones, which
+/// hold what is counted. By chance alone none stands out so far.
+void add_detail_of_counts(const std::vector<double>& pilot, GuidedRegion& r) {
+  const GaussianWindow wide(risk_sigma_px);
+  const double pilot_pixels = 4 * std::numbers::pi * pilot_sigma_px * pilot_sigma_px;
+  std::vector<double> around(pilot.size(), 0.0), seen = around, scratch;
+  for (std::size_t i = 0; i < around.size(); ++i)
+    if (r.counts.counts(i)) around[i] = r.counts.mean(i), seen[i] = 1;
+  wide.sum(around, r.counts.width, r.counts.height, scratch);
+  wide.sum(seen, r.counts.width, r.counts.height, scratch);
+  for (std::size_t i = 0; i < pilot.size(); ++i) {
+    if (!r.counts.counts(i)) continue;
+    const double level = around[i] / seen[i],
+                 noise = r.variance.of_mean(level, pilot_pixels * r.counts.primaries(i));
+    const double share = std::min(ramp(pilot[i] / std::max(level, r.variance.least), peak_contrast),
+                                  ramp((pilot[i] - level) / std::sqrt(noise), peak_deviations));
+    r.detail[i] = std::max(r.detail[i], (detail_classes - 1.0) * share);
   }
 }
 
@@ -329,10 +360,15 @@ void put(const GuidedRegion& r, const GuidedPlanes& planes, double library_casca
     double square = model.expected(e.variance, planes.spread[i], r.detail[i]) *
                     likely_ratio(around.ratio[i], around.doubt[i]);
     const double away = r.counts.mean(i) - value,
-                 beyond = std::abs(away) - most_deviations * std::sqrt(noise);
+                 beyond =
+                     std::abs(away) - most_deviations * std::sqrt(noise) -
+                     (away > 0 ? skewness_share * r.variance.slope / r.counts.primaries(i) : 0);
     if (beyond > 0) {
       value += std::copysign(beyond, away);
-      square = std::min(square + beyond * beyond, std::max(square, noise));
+      // What is kept of a pixel's own counts has their noise.
+      square = std::min(
+          square + beyond * beyond,
+          std::max(square, r.variance.of_mean(std::max(value, e.value), r.counts.primaries(i))));
     }
     if (variance > 0)
       out.radius_px.data()[i] = std::sqrt(std::max(1.0, noise / variance) * std::numbers::inv_pi);
@@ -394,6 +430,7 @@ GuidedImage estimate_guided(const CountImage& counts, const std::vector<Guide>& 
     add_guides(guides, false, r);
     set_weights(r);
     set_detail(r);  // by guides without noise
+    add_detail_of_counts(pilot, r);
     add_guides(guides, true, r);
     GuidedPlanes planes;
     planes.spread.assign(pilot.size(), 0.0);
