@@ -31,6 +31,7 @@ void add_estimate(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 void add_materials(CLI::App& app, Action& action);
 void add_library(CLI::App& app, Action& action);
+void add_profile(CLI::App& app, Action& action);
 void add_register(CLI::App& app, Action& action);
 void add_reconstruct(CLI::App& app, Action& action, const std::string& command_line);
 void add_tip(CLI::App& app, Action& action);

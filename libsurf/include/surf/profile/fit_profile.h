@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "surf/core/placed_image.h"
+#include "surf/core/progress.h"
+#include "surf/profile/edge_roughness.h"
+#include "surf/profile/image_edges.h"
+#include "surf/profile/profile_library.h"
+
+namespace surf {
+
+/// A pixel of an edge: its row along the edge, and its place across it.
+struct ProfileSample {
+  int edge = 0, row = 0;
+  double x_nm = 0, value = 0;
+};
+
+/// What is fitted: pixels of edges that lie at equal distances along them.
+struct ProfileData {
+  std::vector<ImageEdge> edges;
+  std::vector<ProfileSample> samples;
+  int rows = 0;
+  double row_distance_nm = 1;
+  bool closed = false;  ///< the rows run around a hole
+};
+
+/// The pixels of an image whose lines run along y.
+ProfileData profile_data(const PlacedImage& image, const std::vector<ImageEdge>& edges);
+/// The pixels around a hole: rows are directions, x is the distance from its middle.
+ProfileData profile_data(const PlacedImage& image, const Circle& hole);
+
+struct ProfileFitOptions {
+  bool walls_alike = true;  ///< left and right walls have one shape
+  /// Priors of the numbers: normal, with these deviations; 0: held at the mean, infinite: none. The
+  /// width follows from the edges' places.
+  ProfileNumbers prior_mean{}, prior_deviation{};
+  /// What the simulation may be off by: a share of the signal's contrast, correlated over some nm.
+  double model_error = 0.05, model_error_nm = 4;
+  Watch watch;
+};
+
+/// A number with its standard error.
+struct Measured {
+  double value = 0, standard_error = 0;
+};
+
+struct FittedEdge {
+  ImageEdge edge;
+  Measured place_nm;              ///< mean of its rows
+  std::vector<double> rows_nm;    ///< place of each row
+  std::vector<double> errors_nm;  ///< their standard errors
+};
+
+/// A measured signal across an edge, and what the fit makes of it, at distances u from the edge.
+struct MeanProfile {
+  std::vector<double> u_nm, measured, standard_error, fitted;
+};
+
+struct ProfileFit {
+  std::vector<FittedEdge> edges;
+  /// Of the walls with the ground at their left and at their right; the same if walls are alike.
+  /// The order of ProfileNumbers; a width's standard error is that of the mean width.
+  std::array<Measured, profile_numbers> left, right;
+  std::vector<Measured> widths_nm;  ///< of each feature with two edges, or a hole's diameter
+  double gain = 1, offset = 0;
+  double blur_nm = 0;  ///< what rows are displaced by that alignment did not follow
+  EdgeRoughness edge_roughness, width_roughness;
+  EdgeSpectrum edge_spectrum, width_spectrum;
+  std::vector<MeanProfile> profiles;  ///< of left and right walls
+  /// What the simulation is off by, root mean square over the signal's contrast.
+  double discrepancy_share = 0;
+  bool converged = false;
+  bool at_border = false;  ///< a number lies at the border of the library's box
+};
+
+/// Fits shape, gain, offset and the place of each edge in each row. Places of rows are smoothed by
+/// the roughness that they show, so that noise does not align itself; what this leaves blurs the
+/// model. Throws InvalidInput for data without samples at an edge, Interrupted.
+ProfileFit fit_profile(const ProfileData& data, const ProfileLibrary& library,
+                       const ProfileFitOptions& options);
+
+}  // namespace surf

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace surf {
+
+/// What a wall's signal depends on.
+enum ProfileNumber { profile_width, profile_height, profile_angle, profile_top, profile_foot };
+constexpr std::size_t profile_numbers = 5;
+/// Width and height, nm; angle, degrees; radii of top and foot, nm.
+using ProfileNumbers = std::array<double, profile_numbers>;
+
+/// Where a library holds: about `middle`, within `half` on both sides; 0: this number is fixed.
+struct ProfileBox {
+  ProfileNumbers middle{}, half{};
+};
+
+/// Shapes to simulate for a library of this box: its middle, and points that fill it evenly
+/// (Halton's sequence), enough for all linear and quadratic terms with `per_term` points each.
+std::vector<ProfileNumbers> profile_design(const ProfileBox& box, double per_term = 2.5);
+
+/// The signal across a wall, u nm from the middle of its flank, material at positive u, by a
+/// quadratic function of the shape's numbers at each u, which is fitted to simulated signals.
+class ProfileLibrary {
+ public:
+  struct Value {
+    double value = 0, by_u = 0, by_u2 = 0;
+    ProfileNumbers by_number{};
+    double variance = 0;  ///< of the value, by the simulations' noise and what no quadratic fits
+  };
+
+  /// `signals`: per shape the signal at u = first + k step. Throws InvalidInput for fewer shapes
+  /// than terms, signals of different lengths, or values that are not finite.
+  ProfileLibrary(ProfileBox box, double first_u_nm, double step_nm,
+                 const std::vector<ProfileNumbers>& shapes,
+                 const std::vector<std::vector<double>>& signals);
+
+  /// Beyond the range of u the signal goes on as at its end.
+  Value at(double u_nm, const ProfileNumbers& numbers) const;
+
+  const ProfileBox& box() const { return box_; }
+  double first_u_nm() const { return first_; }
+  double last_u_nm() const { return first_ + step_ * static_cast<double>(count_ - 1); }
+
+ private:
+  struct Term {
+    double value;
+    ProfileNumbers by_number;
+  };
+  std::vector<Term> terms(const ProfileNumbers& numbers) const;
+
+  ProfileBox box_;
+  double first_, step_;
+  std::size_t count_ = 0, terms_ = 0;
+  std::vector<std::size_t> free_;
+  std::vector<double> coefficients_;  // of each u, its terms
+  std::vector<double> variance_;      // of the fitted value, at each u
+};
+
+}  // namespace surf

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/profile/image_edges.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "surf/core/error.h"
+#include "surf/core/sample_image.h"
+
+namespace surf {
+namespace {
+
+constexpr double smooth_px = 1;
+constexpr double least_rise = 0.3;  // of the strongest rim: lower ones are none
+constexpr double rim_reach_px = 3;  // what lies further from a rim's top is level ground
+
+std::vector<double> smoothed(const std::vector<double>& y) {
+  constexpr int reach = 3;
+  std::vector<double> out(y.size());
+  const auto n = static_cast<int>(y.size());
+  for (int i = 0; i < n; ++i) {
+    double sum = 0, weight = 0;
+    for (int k = std::max(0, i - reach); k <= std::min(n - 1, i + reach); ++k) {
+      if (!std::isfinite(y[static_cast<std::size_t>(k)])) continue;
+      const double w = std::exp(-0.5 * (k - i) * (k - i) / (smooth_px * smooth_px));
+      sum += w * y[static_cast<std::size_t>(k)], weight += w;
+    }
+    out[static_cast<std::size_t>(i)] = weight > 0 ? sum / weight : 0;
+  }
+  return out;
+}
+
+double median(std::vector<double> v) {
+  if (v.empty()) return 0;
+  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+  std::nth_element(v.begin(), middle, v.end());
+  return *middle;
+}
+
+/// The mean of all rows, by column.
+std::vector<double> mean_row(const PlacedImage& image) {
+  const Grid<double>& v = image.values;
+  std::vector<double> out(static_cast<std::size_t>(v.width()), 0);
+  for (int x = 0; x < v.width(); ++x) {
+    double sum = 0;
+    int count = 0;
+    for (int y = 0; y < v.height(); ++y)
+      if (image.is_valid(x, y)) sum += v(x, y), ++count;
+    out[static_cast<std::size_t>(x)] = count > 0 ? sum / count : 0;
+  }
+  return out;
+}
+
+/// Tops of bright rims: maxima that rise above the level of the image by a share of the highest.
+std::vector<int> rims(const std::vector<double>& y) {
+  const double level = median(y), highest = *std::ranges::max_element(y);
+  std::vector<int> tops;
+  const auto n = static_cast<int>(y.size());
+  for (int i = 1; i + 1 < n; ++i) {
+    const double here = y[static_cast<std::size_t>(i)];
+    if (!(here - level > least_rise * (highest - level))) continue;
+    bool top = true;
+    for (int k = std::max(0, i - 3); k <= std::min(n - 1, i + 3) && top; ++k)
+      top = y[static_cast<std::size_t>(k)] < here ||
+            (k >= i && y[static_cast<std::size_t>(k)] <= here);
+    if (top) tops.push_back(i);
+  }
+  return tops;
+}
+
+struct Flank {
+  int top, ground_end;  // columns: the rim's top, the end of its ground, on the side of the ground
+};
+
+/// Where the signal crosses the threshold between the rim's top and the ground; NaN if nowhere.
+double crossing(const std::vector<double>& y, const Flank& f, double threshold) {
+  const int step = f.ground_end < f.top ? -1 : 1;
+  std::vector<double> ground;
+  for (int i = f.top + step * static_cast<int>(rim_reach_px); i != f.ground_end; i += step) {
+    if (i < 0 || i >= static_cast<int>(y.size()) || (f.ground_end - i) * step <= 0) break;
+    ground.push_back(y[static_cast<std::size_t>(i)]);
+  }
+  if (ground.empty()) ground.push_back(y[static_cast<std::size_t>(f.ground_end)]);
+  const double low = median(ground), high = y[static_cast<std::size_t>(f.top)],
+               level = low + threshold * (high - low);
+  for (int i = f.top; i != f.ground_end; i += step) {
+    const double a = y[static_cast<std::size_t>(i)], b = y[static_cast<std::size_t>(i + step)];
+    if (a >= level && b < level) return i + step * (a - level) / (a - b);
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+/// The level of the signal beside a rim, beyond its slope.
+double level_beside(const std::vector<double>& y, int top, int end) {
+  const int step = end < top ? -1 : 1;
+  std::vector<double> values;
+  for (int i = top + step * static_cast<int>(rim_reach_px); (end - i) * step >= 0; i += step)
+    values.push_back(y[static_cast<std::size_t>(i)]);
+  return values.empty() ? y[static_cast<std::size_t>(end)] : median(values);
+}
+
+struct Rim {
+  int top, left, right;  // its own columns, from the middle to the rim before to that to the next
+  bool material_right;
+};
+
+/// Rims, and on which side of each the material is: the ground beside a wall is darker.
+std::vector<Rim> rims_of(const std::vector<double>& y) {
+  const std::vector<int> tops = rims(y);
+  std::vector<Rim> out;
+  for (std::size_t i = 0; i < tops.size(); ++i) {
+    const int left = i == 0 ? 0 : (tops[i - 1] + tops[i]) / 2,
+              right = i + 1 == tops.size() ? static_cast<int>(y.size()) - 1
+                                           : (tops[i] + tops[i + 1]) / 2;
+    out.push_back(
+        {tops[i], left, right, level_beside(y, tops[i], left) < level_beside(y, tops[i], right)});
+  }
+  return out;
+}
+
+/// Rims by feature: a pair around material or a gap, or one of edges.
+std::vector<std::vector<Rim>> features_of(const std::vector<Rim>& rims, FeatureKind kind) {
+  std::vector<std::vector<Rim>> out;
+  if (kind == FeatureKind::edge || kind == FeatureKind::hole) {
+    for (const Rim& r : rims) out.push_back({r});
+    return out;
+  }
+  const bool line = kind == FeatureKind::line;
+  for (std::size_t i = 0; i + 1 < rims.size(); ++i)
+    if (rims[i].material_right == line && rims[i + 1].material_right != line)
+      out.push_back({rims[i], rims[i + 1]}), ++i;
+  return out;
+}
+
+}  // namespace
+
+ThresholdEdges find_edges(const PlacedImage& image, FeatureKind kind, double threshold) {
+  const std::vector<double> mean = smoothed(mean_row(image));
+  ThresholdEdges out;
+  std::vector<Flank> flanks;
+  const auto features = features_of(rims_of(mean), kind);
+  for (std::size_t f = 0; f < features.size(); ++f)
+    for (const Rim& rim : features[f]) {
+      const Flank flank{rim.top, rim.material_right ? rim.left : rim.right};
+      const double column = crossing(mean, flank, threshold);
+      if (!std::isfinite(column)) continue;
+      flanks.push_back(flank);
+      out.edges.push_back({static_cast<int>(f), rim.material_right,
+                           image.x_nm(0) + column * image.pitch_x_nm, image.x_nm(rim.left),
+                           image.x_nm(rim.right)});
+    }
+  if (out.edges.empty())
+    throw InvalidInput("SEM image",
+                       fmt::format("no {} is seen: along x no bright rims with darker ground at "
+                                   "{} side stand out",
+                                   name(kind), kind == FeatureKind::edge ? "one" : "the outer"),
+                       "Check what the image shows; lines must run along y");
+  out.places_nm.resize(out.edges.size());
+  for (int y = 0; y < image.values.height(); ++y) {
+    out.rows_nm.push_back(image.y_nm(y));
+    std::vector<double> row;
+    for (int x = 0; x < image.values.width(); ++x)
+      row.push_back(image.is_valid(x, y) ? image.values(x, y)
+                                         : std::numeric_limits<double>::quiet_NaN());
+    row = smoothed(row);
+    for (std::size_t e = 0; e < flanks.size(); ++e) {
+      // The rim's top of this row.
+      const int reach = static_cast<int>(2 * rim_reach_px);
+      Flank flank = flanks[e];
+      for (int x = std::max(0, flanks[e].top - reach);
+           x <= std::min(static_cast<int>(row.size()) - 1, flanks[e].top + reach); ++x)
+        if (row[static_cast<std::size_t>(x)] > row[static_cast<std::size_t>(flank.top)])
+          flank.top = x;
+      const double column =
+          flank.top == flank.ground_end ? std::nan("") : crossing(row, flank, threshold);
+      out.places_nm[e].push_back(image.x_nm(0) + column * image.pitch_x_nm);
+    }
+  }
+  return out;
+}
+
+Circle find_hole(const PlacedImage& image) {
+  const Grid<double>& v = image.values;
+  const InvalidInput none(
+      "SEM image", "no hole is seen: no dark part has a bright rim around it",
+      "Check what the image shows; the hole and its surroundings must be in it");
+  // The darkest place, over an eighth of the image.
+  const int half = std::max(2, std::min(v.width(), v.height()) / 16);
+  double least = HUGE_VAL;
+  int dark_x = 0, dark_y = 0;
+  for (int y = half; y < v.height() - half; ++y)
+    for (int x = half; x < v.width() - half; ++x) {
+      double sum = 0;
+      for (int dy = -half; dy <= half; dy += std::max(1, half / 4))
+        for (int dx = -half; dx <= half; dx += std::max(1, half / 4)) sum += v(x + dx, y + dy);
+      if (sum < least) least = sum, dark_x = x, dark_y = y;
+    }
+  Circle circle{image.x_nm(dark_x), image.y_nm(dark_y), 0};
+  // The brightest places on rays from there lie on the rim; a circle through them, repeated.
+  for (int round = 0; round < 4; ++round) {
+    constexpr int rays = 90;
+    const double step = 0.5 * image.pitch_x_nm;
+    std::vector<Point2> rim;
+    std::vector<double> distances;
+    for (int k = 0; k < rays; ++k) {
+      const double a = 2 * std::numbers::pi * k / rays;
+      double best = -HUGE_VAL, at = 0;
+      for (double r = 2 * image.pitch_x_nm;; r += step) {
+        const Point2 p{circle.x_nm + r * std::cos(a), circle.y_nm + r * std::sin(a)};
+        if (!(p.x > image.x_nm(1) && p.x < image.x_nm(v.width() - 2) && p.y > image.y_nm(1) &&
+              p.y < image.y_nm(v.height() - 2)))
+          break;
+        const double value = sample_image(image, p);
+        if (value > best) best = value, at = r;
+      }
+      if (at > 0) {
+        distances.push_back(at);
+        rim.push_back({circle.x_nm + at * std::cos(a), circle.y_nm + at * std::sin(a)});
+      }
+    }
+    if (distances.size() < rays / 2) throw none;
+    const double radius = median(distances);
+    Circle next{0, 0, 0};
+    double count = 0;
+    // The mean of opposite points cancels what lies between rays.
+    for (std::size_t k = 0; k < rim.size(); ++k)
+      if (std::abs(distances[k] - radius) < 0.25 * radius)
+        next.x_nm += rim[k].x, next.y_nm += rim[k].y, next.radius_nm += distances[k], ++count;
+    if (count < rays / 3.0) throw none;
+    circle = {next.x_nm / count, next.y_nm / count, next.radius_nm / count};
+  }
+  const double room =
+      std::min({circle.x_nm - image.x_nm(0), image.x_nm(v.width() - 1) - circle.x_nm,
+                circle.y_nm - image.y_nm(0), image.y_nm(v.height() - 1) - circle.y_nm});
+  if (!(room > circle.radius_nm + 3 * image.pitch_x_nm)) throw none;
+  return circle;
+}
+
+PlacedImage unrolled(const PlacedImage& image, const Circle& hole) {
+  const double step = image.pitch_x_nm;
+  const double room =
+      std::min({hole.x_nm - image.x_nm(0), image.x_nm(image.values.width() - 1) - hole.x_nm,
+                hole.y_nm - image.y_nm(0), image.y_nm(image.values.height() - 1) - hole.y_nm});
+  const int columns = std::max(4, static_cast<int>(std::floor(room / step)));
+  const int rows =
+      std::max(16, static_cast<int>(std::lround(2 * std::numbers::pi * hole.radius_nm / step)));
+  PlacedImage out;
+  out.pitch_x_nm = step;
+  out.pitch_y_nm = 2 * std::numbers::pi * hole.radius_nm / rows;
+  out.values = Grid<double>(columns, rows);
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x) {
+      const double a = 2 * std::numbers::pi * y / rows, r = x * step;
+      out.values(x, y) =
+          sample_image(image, {hole.x_nm + r * std::cos(a), hole.y_nm + r * std::sin(a)});
+    }
+  return out;
+}
+
+}  // namespace surf

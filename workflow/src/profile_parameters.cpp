@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "common_parameters.h"
+#include "surf/core/some_parameters.h"
+#include "surf/mc/request/simulation_request.h"
+#include "surf/workflow/profile_job.h"
+
+namespace surf::workflow {
+namespace {
+
+/// Beam and physics, in the form of a simulation request.
+void describe_beam(ParameterVisitor& visit, ProfileJob& job) {
+  mc::SimulationRequest request;
+  request.beam.energy_ev = job.energy_ev;
+  request.beam.spot_nm = job.spot_nm;
+  request.physics = job.physics;
+  describe_some(visit, request, {{"beam.energy"}, {"beam.spot"}, {"simulation.physics"}});
+  if (!visit.reads()) return;
+  job.energy_ev = request.beam.energy_ev;
+  job.spot_nm = request.beam.spot_nm;
+  job.physics = request.physics;
+}
+
+}  // namespace
+
+void describe(ParameterVisitor& visit, ProfileJob& job) {
+  describe(visit, job.sem);
+  visit.form(
+      {.name = "profile.kind",
+       .help = "What is measured: line, trench, edge (ground at its left) or hole",
+       .form = "KIND"},
+      [&] { return std::string(name(job.kind)); },
+      [&](std::string_view text, const std::string& subject) {
+        job.kind = parse_feature_kind(std::string(text), subject);
+      });
+  visit(job.along_x, {.name = "profile.along_x", .help = "Lines run along x, not along y"});
+  std::optional<double> height = job.height_nm > 0 ? std::optional(job.height_nm) : std::nullopt;
+  visit(height, {.name = "profile.height",
+                 .help = "Height of the walls, which no upright view shows",
+                 .unit = Unit::nm,
+                 .limits = within(1, 100'000)});
+  job.height_nm = height.value_or(0);
+  visit(job.height_error_nm, {.name = "profile.height_error",
+                              .help = "Standard error of this height",
+                              .unit = Unit::nm,
+                              .limits = within(0, 10'000)});
+  visit(job.pitch_nm, {.name = "profile.pitch",
+                       .help = "Distance of lines or trenches; 0nm: there is one",
+                       .unit = Unit::nm,
+                       .limits = within(0, 1e6),
+                       .otherwise = "as the image shows"});
+  visit(job.angle_deg, {.name = "profile.angle",
+                        .help = "Angle of walls about which profiles are simulated; above 90deg "
+                                "they are undercut",
+                        .unit = Unit::deg,
+                        .limits = within(45, 120)});
+  visit(job.angle_range_deg, {.name = "profile.angle_range",
+                              .help = "How far from it they are simulated, on both sides",
+                              .unit = Unit::deg,
+                              .limits = within(0.5, 20)});
+  visit(job.top_radius_nm, {.name = "profile.top_radius",
+                            .help = "Usual radius of upper corners, as far off as it is large",
+                            .unit = Unit::nm,
+                            .limits = within(0, 1000)});
+  visit(job.foot_radius_nm, {.name = "profile.foot_radius",
+                             .help = "Usual radius of lower corners, likewise",
+                             .unit = Unit::nm,
+                             .limits = within(0, 1000)});
+  visit(job.walls_apart,
+        {.name = "profile.walls_apart", .help = "Left and right walls have shapes of their own"});
+  visit(job.threshold, {.name = "profile.threshold",
+                        .help = "Threshold of the threshold method, a share of the way from the "
+                                "ground's level to the rim's",
+                        .limits = within(0.05, 0.95)});
+  describe_beam(visit, job);
+  visit(job.signal,
+        {.name = "profile.signal", .help = "What the image shows: SE or BSE", .form = "SE|BSE"});
+  visit(job.electrons, {.name = "profile.electrons",
+                        .help = "Primaries per place of simulated profiles",
+                        .limits = within(10, 1'000'000)});
+  visit(job.rounds, {.name = "profile.rounds",
+                     .help = "How often profiles are simulated, each time nearer to what was found",
+                     .limits = within(1, 5)});
+  visit(job.model_error, {.name = "profile.model_error",
+                          .help = "What simulated profiles may be off by, as a share of their "
+                                  "contrast: by other physics, another detector",
+                          .unit = Unit::share,
+                          .limits = within(0, 1)});
+  visit(job.seed, {.name = "profile.seed", .help = "Seed of the simulations"});
+  describe_cache(visit, job.cache);
+  describe_threads(visit, job.threads);
+  bool no_picture = !job.picture;
+  visit(no_picture, {.name = "output.no_picture",
+                     .help = "Leave out panel.png, which needs Python with Matplotlib",
+                     .recorded = false});
+  job.picture = !no_picture;
+  describe_folder(visit, job.folder, "Folder for results, created if it is missing");
+}
+
+}  // namespace surf::workflow

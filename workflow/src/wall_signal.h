@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "surf/core/progress.h"
+#include "surf/mc/cascades/library_source.h"
+#include "surf/mc/physics/material.h"
+#include "surf/mc/physics/physics.h"
+#include "surf/profile/feature_shape.h"
+
+namespace surf::workflow {
+
+/// How the signal across a wall is simulated: at u = first + k step, as ProfileLibrary has it.
+struct WallSimulation {
+  mc::Material material;
+  mc::Physics physics;
+  double energy_ev = 1000, spot_nm = 0;
+  std::string signal = "SE";  ///< SE or BSE
+  double first_u_nm = -100, step_nm = 1;
+  int places = 200;
+  std::int64_t electrons = 1000;  ///< per place
+  std::uint64_t seed = 1;
+  int threads = 0;
+};
+
+/// Yields across the right wall of a feature; of a hole, along a radius. Throws Interrupted, and
+/// InvalidInput for shapes that `feature_mesh` refuses.
+std::vector<double> simulate_wall(const FeatureShape& shape, const WallSimulation& simulation,
+                                  mc::LibrarySource& libraries, const Watch& watch = {});
+
+}  // namespace surf::workflow
