@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 
 #include "chain_steps.h"
 #include "job_libraries.h"
 #include "profile_output.h"
 #include "surf/core/error.h"
+#include "surf/core/parallel.h"
 #include "surf/core/units.h"
 #include "surf/io/plot.h"
 #include "surf/mc/geometry/field_in_reach.h"
@@ -156,25 +158,50 @@ WallSimulation simulation_of(const ProfileJob& job, const ProfileBox& box, doubl
   how.step_nm = std::clamp(0.4 * job.sem.image.pitch_x_nm, 0.5, 2.0);
   how.places = std::max(8, static_cast<int>((last - how.first_u_nm) / how.step_nm) + 1);
   how.electrons = job.electrons;
-  how.threads = job.threads;
   return how;
 }
+
+/// One library of cascades for all profiles, whoever asks.
+class OneLibrary : public mc::LibrarySource {
+ public:
+  OneLibrary(mc::LibrarySource& source, int threads) : source_(&source), threads_(threads) {}
+  std::shared_ptr<const mc::CascadeLibrary> library(const mc::CascadeSettings& settings,
+                                                    std::size_t wanted, int,
+                                                    const Watch& watch) override {
+    const std::lock_guard lock(mutex_);
+    if (!kept_ || wanted > size_) {
+      size_ = std::max(wanted, cascades);
+      kept_ = source_->library(settings, size_, threads_, watch);
+    }
+    return kept_;
+  }
+
+ private:
+  mc::LibrarySource* source_;
+  int threads_;
+  std::size_t size_ = 0;
+  std::shared_ptr<const mc::CascadeLibrary> kept_;
+  std::mutex mutex_;
+};
 
 ProfileLibrary simulate_library(const ProfileJob& job, const ProfileBox& box, double pitch_nm,
                                 std::int64_t electrons, std::uint64_t seed,
                                 mc::LibrarySource& libraries, const Watch& watch) {
   WallSimulation how = simulation_of(job, box, pitch_nm);
   how.electrons = electrons;
+  how.threads = 1;
   const std::vector<ProfileNumbers> shapes = profile_design(box);
-  std::vector<std::vector<double>> signals;
-  for (std::size_t i = 0; i < shapes.size(); ++i) {
-    watch.check();
-    how.seed = seed + i;
-    const double count = static_cast<double>(shapes.size());
-    signals.push_back(simulate_wall(
-        shape_of(job.kind, pitch_nm, shapes[i]), how, libraries,
-        watch.part(static_cast<double>(i) / count, static_cast<double>(i + 1) / count)));
-  }
+  std::vector<std::vector<double>> signals(shapes.size());
+  Watch quiet;
+  quiet.cancel = watch.cancel;
+  parallel_for(
+      shapes.size(), job.threads,
+      [&](std::size_t i, int) {
+        WallSimulation own = how;
+        own.seed = seed + i;
+        signals[i] = simulate_wall(shape_of(job.kind, pitch_nm, shapes[i]), own, libraries, quiet);
+      },
+      watch);
   return {box, how.first_u_nm, how.step_nm, shapes, signals};
 }
 
@@ -229,7 +256,8 @@ ProfileSummary run(const ProfileJob& job, const Reporter& reporter) {
   s.pitch_nm = job.pitch_nm ? *job.pitch_nm : pitch ? pitch->value : 0;
   if (job.kind == FeatureKind::edge || job.kind == FeatureKind::hole) s.pitch_nm = 0;
 
-  JobLibraries libraries(job.cache, reporter.counting("cascades"), reporter.on_note);
+  JobLibraries kept(job.cache, reporter.counting("cascades"), reporter.on_note);
+  OneLibrary libraries(kept, job.threads);
   const ProfileBox first = first_box(job, width);
   ProfileFitOptions options;
   options.walls_alike = !job.walls_apart;

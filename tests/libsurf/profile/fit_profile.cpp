@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/profile/fit_profile.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "afm/normal_numbers.h"
+#include "surf/core/error.h"
+
+namespace surf {
+namespace {
+
+/// A bright rim at a wall, which is wider the shallower and rounder the wall is.
+double signal(double u, const ProfileNumbers& n) {
+  const double width = 3 + 0.5 * (90 - n[profile_angle]) + 0.3 * n[profile_top],
+               middle = 1 + 0.2 * n[profile_top];
+  const double rim = std::exp(-0.5 * std::pow((u - middle) / width, 2)),
+               step = 0.5 * (1 + std::erf(u / 4)),
+               shadow = std::exp(-0.5 * std::pow((u + 6 + n[profile_foot]) / 4, 2));
+  return 0.8 + 0.2 * step + 1.2 * rim - 0.15 * shadow;
+}
+
+const ProfileBox box{{80, 100, 86, 4, 3}, {6, 0, 2, 2, 2}};
+const ProfileNumbers truth{80, 100, 86.6, 3.2, 3.5};
+
+ProfileLibrary library() {
+  const auto shapes = profile_design(box);
+  std::vector<std::vector<double>> signals;
+  for (const ProfileNumbers& n : shapes) {
+    signals.emplace_back();
+    for (int k = 0; k <= 140; ++k) signals.back().push_back(signal(-35 + 0.5 * k, n));
+  }
+  return {box, -35, 0.5, shapes, signals};
+}
+
+struct Made {
+  PlacedImage image;
+  double width_nm = 0;  // the mean of its rows
+};
+
+/// Two lines with rough edges.
+Made lines(std::uint64_t seed, double sigma, double noise) {
+  constexpr int columns = 90, rows = 96;
+  constexpr double pixel = 4;
+  Made made;
+  made.image.pitch_x_nm = made.image.pitch_y_nm = pixel;
+  made.image.values = Grid<double>(columns, rows);
+  NormalNumbers normal(seed, 9);
+  double displaced[4];
+  for (double& d : displaced) d = sigma * normal();
+  for (int y = 0; y < rows; ++y) {
+    for (double& d : displaced) d = 0.9 * d + sigma * std::sqrt(1 - 0.81) * normal();
+    const double edges[4] = {51 + displaced[0], 131 + displaced[1], 221 + displaced[2],
+                             301 + displaced[3]};
+    made.width_nm += 0.5 * (edges[1] - edges[0] + edges[3] - edges[2]) / rows;
+    for (int x = 0; x < columns; ++x) {
+      const double at = x * pixel;
+      const int e = at < 91 ? 0 : at < 176 ? 1 : at < 261 ? 2 : 3;
+      const double u = (e % 2 == 0 ? 1 : -1) * (at - edges[e]);
+      const double level = 100 * signal(std::clamp(u, -35.0, 35.0), truth) + 20;
+      made.image.values(x, y) = level + noise * std::sqrt(level / 100) * normal();
+    }
+  }
+  return made;
+}
+
+ProfileFitOptions usual() {
+  ProfileFitOptions o;
+  constexpr double unknown = std::numeric_limits<double>::infinity();
+  o.prior_mean = box.middle;
+  o.prior_deviation = {unknown, 0, unknown, 2, 2};
+  o.model_error = 0.002;
+  return o;
+}
+
+ProfileFit fit(const PlacedImage& image, const ProfileFitOptions& options) {
+  static const ProfileLibrary known = library();
+  return fit_profile(profile_data(image, find_edges(image, FeatureKind::line).edges), known,
+                     options);
+}
+
+TEST(FitProfile, FindsShapeWidthAndRoughnessWithinItsErrors) {
+  constexpr int trials = 12;
+  int width_in = 0, angle_in = 0;
+  double width2 = 0, sigma = 0;
+  for (std::uint64_t seed = 1; seed <= trials; ++seed) {
+    const Made made = lines(seed, 1.2, 12);
+    const ProfileFit f = fit(made.image, usual());
+    EXPECT_TRUE(f.converged);
+    ASSERT_EQ(f.edges.size(), 4u);
+    const Measured width = f.left[profile_width], angle = f.left[profile_angle];
+    width2 += std::pow(width.value - made.width_nm, 2) / trials;
+    width_in += std::abs(width.value - made.width_nm) <= 2 * width.standard_error + 0.02;
+    angle_in += std::abs(angle.value - truth[profile_angle]) <= 2 * angle.standard_error + 0.02;
+    sigma += f.edge_roughness.sigma_nm / trials;
+    EXPECT_LT(width.standard_error, 0.3);
+    EXPECT_NEAR(f.gain, 100, 4);
+  }
+  EXPECT_LT(std::sqrt(width2), 0.2);
+  EXPECT_GE(width_in, 10);
+  EXPECT_GE(angle_in, 10);
+  EXPECT_NEAR(sigma, 1.2, 0.15);
+}
+
+TEST(FitProfile, LeftAndRightWallsMayDiffer) {
+  ProfileFitOptions o = usual();
+  o.walls_alike = false;
+  const ProfileFit f = fit(lines(3, 0, 8).image, o);
+  EXPECT_NE(f.left[profile_angle].value, f.right[profile_angle].value);
+  EXPECT_NEAR(f.left[profile_angle].value, truth[profile_angle], 0.3);
+  EXPECT_NEAR(f.right[profile_angle].value, truth[profile_angle], 0.3);
+  EXPECT_EQ(f.profiles.size(), 2u);
+}
+
+TEST(FitProfile, AWrongModelIsToldByWhatItIsOffBy) {
+  Made made = lines(4, 0, 8);
+  const double right = fit(made.image, usual()).discrepancy_share;
+  ProfileFitOptions o = usual();
+  o.model_error = 0.05;
+  for (int y = 0; y < made.image.values.height(); ++y)
+    for (int x = 0; x < made.image.values.width(); ++x) {
+      const double at = 4 * x, near = std::min(std::abs(at - 65), std::abs(at - 117));
+      made.image.values(x, y) += 40 * std::exp(-0.5 * near * near / 9);
+    }
+  EXPECT_GT(fit(made.image, o).discrepancy_share, 5 * right + 0.01);
+}
+
+TEST(FitProfile, RefusesAnEdgeWithoutPixels) {
+  ProfileData data = profile_data(lines(1, 0, 8).image, {{0, true, 51, 0, 91}});
+  data.samples.resize(10);
+  const ProfileLibrary known = library();
+  EXPECT_THROW(fit_profile(data, known, usual()), InvalidInput);
+}
+
+}  // namespace
+}  // namespace surf

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/profile/profile_library.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "surf/core/error.h"
+
+namespace surf {
+namespace {
+
+const ProfileBox box{{80, 100, 86, 4, 3}, {5, 0, 4, 3, 2}};
+
+double quadratic(double u, const ProfileNumbers& n) {
+  const double w = n[profile_width] - 80, a = n[profile_angle] - 86, t = n[profile_top] - 4,
+               f = n[profile_foot] - 3;
+  return std::sin(0.2 * u) + 0.1 * w + 0.05 * a * std::cos(0.3 * u) + 0.02 * a * a + 0.03 * t * f -
+         0.01 * t * t * u / 10;
+}
+
+ProfileLibrary library() {
+  const auto shapes = profile_design(box);
+  std::vector<std::vector<double>> signals;
+  for (const ProfileNumbers& n : shapes) {
+    signals.emplace_back();
+    for (int k = 0; k <= 80; ++k) signals.back().push_back(quadratic(-20 + 0.5 * k, n));
+  }
+  return {box, -20, 0.5, shapes, signals};
+}
+
+TEST(ProfileLibrary, ADesignFillsItsBoxAndHoldsWhatIsFixed) {
+  const auto shapes = profile_design(box);
+  EXPECT_GE(shapes.size(), 37u);
+  EXPECT_EQ(shapes.front(), box.middle);
+  double low = 100, high = 0;
+  for (const ProfileNumbers& n : shapes) {
+    EXPECT_EQ(n[profile_height], 100);
+    for (std::size_t k = 0; k < profile_numbers; ++k)
+      EXPECT_LE(std::abs(n[k] - box.middle[k]), box.half[k] + 1e-12);
+    low = std::min(low, n[profile_angle]), high = std::max(high, n[profile_angle]);
+  }
+  EXPECT_LT(low, 83);
+  EXPECT_GT(high, 89);
+}
+
+TEST(ProfileLibrary, KnowsQuadraticsExactlyAndItsDerivatives) {
+  const ProfileLibrary lib = library();
+  ProfileNumbers n{82, 100, 84.5, 5, 2.2};
+  EXPECT_NEAR(lib.at(3.5, n).value, quadratic(3.5, n), 1e-9);
+  EXPECT_NEAR(lib.at(3.5, n).variance, 0, 1e-15);
+  const double u = 3.27, step = 1e-5;
+  EXPECT_NEAR(lib.at(u, n).value, quadratic(u, n), 1e-4);
+  const ProfileLibrary::Value v = lib.at(u, n);
+  EXPECT_NEAR(v.by_u, (lib.at(u + step, n).value - lib.at(u - step, n).value) / (2 * step), 1e-6);
+  EXPECT_NEAR(v.by_u2, (lib.at(u + step, n).by_u - lib.at(u - step, n).by_u) / (2 * step), 1e-5);
+  for (const std::size_t k : {profile_width, profile_angle, profile_top, profile_foot}) {
+    ProfileNumbers up = n, down = n;
+    up[k] += step, down[k] -= step;
+    EXPECT_NEAR(v.by_number[k], (lib.at(u, up).value - lib.at(u, down).value) / (2 * step), 1e-6);
+  }
+  EXPECT_EQ(v.by_number[profile_height], 0);
+}
+
+TEST(ProfileLibrary, GoesOnLevelBeyondItsEnds) {
+  const ProfileLibrary lib = library();
+  EXPECT_NEAR(lib.at(500, box.middle).value, quadratic(20, box.middle), 1e-9);
+  EXPECT_EQ(lib.at(500, box.middle).by_u, 0);
+  EXPECT_NEAR(lib.at(-500, box.middle).value, quadratic(-20, box.middle), 1e-9);
+}
+
+TEST(ProfileLibrary, RefusesTooFewShapesAndValuesThatAreNone) {
+  auto shapes = profile_design(box);
+  std::vector<std::vector<double>> signals(shapes.size(), std::vector<double>(10, 1));
+  signals[3][4] = std::nan("");
+  EXPECT_THROW(ProfileLibrary(box, 0, 1, shapes, signals), InvalidInput);
+  signals[3].pop_back();
+  EXPECT_THROW(ProfileLibrary(box, 0, 1, shapes, signals), InvalidInput);
+  shapes.resize(5), signals.resize(5);
+  EXPECT_THROW(ProfileLibrary(box, 0, 1, shapes, signals), InvalidInput);
+}
+
+}  // namespace
+}  // namespace surf
