@@ -13,7 +13,7 @@ namespace surf::workflow {
 namespace {
 
 // Beyond that electrons from the scanned part hardly come back.
-constexpr double heights_around = 10, least_around_nm = 500;
+constexpr double heights_around = 4, least_around_nm = 200;
 
 }  // namespace
 

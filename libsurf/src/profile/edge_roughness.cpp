@@ -10,6 +10,7 @@
 #include <complex>
 #include <memory>
 #include <numbers>
+#include <vector>
 
 #include "surf/core/error.h"
 
@@ -61,29 +62,36 @@ void remove_line(std::vector<double>& y) {
     y[i] -= mean + slope / spread * (static_cast<double>(i) - 0.5 * (n - 1));
 }
 
-/// The standard error of the logarithm of sigma, by the curvature of the likelihood.
-double error_of_log_sigma(const Whittle& whittle, const Numbers& at) {
+/// The standard error of the logarithm of sigma, by the curvature of the likelihood. Numbers at
+/// their limits are taken as known.
+double error_of_log_sigma(const Whittle& whittle, const Numbers& at, const Numbers& low,
+                          const Numbers& high) {
   constexpr double step = 0.02;
-  double h[numbers][numbers] = {};
-  const auto value = [&](int i, double by_i, int k, double by_k) {
-    Numbers n = at;
-    n[static_cast<std::size_t>(i)] += by_i;
-    n[static_cast<std::size_t>(k)] += by_k;
-    return whittle(roughness_of(n));
+  std::vector<std::size_t> free{log_sigma};
+  for (std::size_t k = log_sigma + 1; k < numbers; ++k)
+    if (at[k] - low[k] > 2 * step && high[k] - at[k] > 2 * step) free.push_back(k);
+  const std::size_t n = free.size();
+  std::vector<std::vector<double>> h(n, std::vector<double>(n, 0));
+  const auto value = [&](std::size_t i, double by_i, std::size_t k, double by_k) {
+    Numbers moved = at;
+    moved[free[i]] += by_i;
+    moved[free[k]] += by_k;
+    return whittle(roughness_of(moved));
   };
-  for (int i = 0; i < numbers; ++i)
-    for (int k = 0; k < numbers; ++k)
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < n; ++k)
       h[i][k] = (value(i, step, k, step) - value(i, step, k, -step) - value(i, -step, k, step) +
                  value(i, -step, k, -step)) /
                 (4 * step * step);
-  for (int i = 0; i < numbers; ++i) h[i][i] += 1e-3;  // what the spectrum does not tell
-  // Gauss elimination of all but sigma leaves the inverse of its variance.
-  for (int k = numbers - 1; k > 0; --k) {
-    if (!(h[k][k] > 0)) continue;
-    for (int i = 0; i < k; ++i)
-      for (int j = 0; j < k; ++j) h[i][j] -= h[i][k] * h[k][j] / h[k][k];
+  const double alone = h[0][0];
+  // Eliminating all but sigma leaves the inverse of its variance.
+  for (std::size_t k = n - 1; k > 0; --k) {
+    if (!(h[k][k] > 1e-6)) continue;
+    for (std::size_t i = 0; i < k; ++i)
+      for (std::size_t j = 0; j < k; ++j) h[i][j] -= h[i][k] * h[k][j] / h[k][k];
   }
-  return h[0][0] > 0 ? 1 / std::sqrt(h[0][0]) : HUGE_VAL;
+  const double information = h[0][0] > 0.01 * alone ? h[0][0] : 0.01 * alone;
+  return information > 0 ? std::min(1.0, 1 / std::sqrt(information)) : 1;
 }
 
 }  // namespace
@@ -176,7 +184,7 @@ EdgeRoughness fit_roughness(const EdgeSpectrum& spectrum, int edges, double dist
   }
   EdgeRoughness r = roughness_of(best);
   r.biased_sigma_nm = all;
-  r.sigma_error_nm = r.sigma_nm * error_of_log_sigma(whittle, best);
+  r.sigma_error_nm = r.sigma_nm * error_of_log_sigma(whittle, best, low, high);
   EdgeRoughness none;
   none.sigma_nm = 1e-9;
   none.correlation_nm = distance_nm;

@@ -202,7 +202,8 @@ Circle find_hole(const PlacedImage& image) {
     }
   Circle circle{image.x_nm(dark_x), image.y_nm(dark_y), 0};
   // The brightest places on rays from there lie on the rim; a circle through them, repeated.
-  for (int round = 0; round < 4; ++round) {
+  constexpr int rounds = 12, rough_rounds = 8;  // from far off the middle all points count
+  for (int round = 0; round < rounds; ++round) {
     constexpr int rays = 90;
     const double step = 0.5 * image.pitch_x_nm;
     std::vector<Point2> rim;
@@ -229,7 +230,7 @@ Circle find_hole(const PlacedImage& image) {
     double count = 0;
     // The mean of opposite points cancels what lies between rays.
     for (std::size_t k = 0; k < rim.size(); ++k)
-      if (std::abs(distances[k] - radius) < 0.25 * radius)
+      if (round < rough_rounds || std::abs(distances[k] - radius) < 0.25 * radius)
         next.x_nm += rim[k].x, next.y_nm += rim[k].y, next.radius_nm += distances[k], ++count;
     if (count < rays / 3.0) throw none;
     circle = {next.x_nm / count, next.y_nm / count, next.radius_nm / count};

@@ -16,7 +16,7 @@ struct EdgeSpectrum {
 /// MEMS MOEMS 17, 041009, 2018, doi:10.1117/1.JMM.17.4.041009).
 struct EdgeRoughness {
   double sigma_nm = 0;         ///< root mean square over all frequencies; 3 sigma is quoted
-  double sigma_error_nm = 0;   ///< its standard error
+  double sigma_error_nm = 0;   ///< its standard error, at most sigma itself
   double correlation_nm = 0;   ///< xi
   double hurst = 0.5;          ///< H, 0.1 to 1
   double noise_nm = 0;         ///< standard deviation of the noise of each place

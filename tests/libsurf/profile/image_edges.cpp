@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/profile/image_edges.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "surf/core/error.h"
+#include "surf/profile/fit_profile.h"
+
+namespace surf {
+namespace {
+
+/// Bright rims at walls, darker ground beside them.
+double across(double u) {
+  return 1 + 0.2 * (u > 0) + std::exp(-0.5 * u * u / 9) -
+         0.2 * std::exp(-0.5 * (u + 10) * (u + 10) / 20);
+}
+
+/// Lines of 80 nm at 50 and 220 nm, and half of a third one.
+PlacedImage lines() {
+  PlacedImage image;
+  image.pitch_x_nm = image.pitch_y_nm = 2;
+  image.values = Grid<double>(200, 20);
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 200; ++x) {
+      const double at = 2 * x;
+      double nearest = -1e9;
+      for (const double left : {50.0, 220.0, 390.0})
+        nearest = std::max(nearest, std::min(at - left, left + 80 - at));
+      image.values(x, y) = across(nearest);
+    }
+  return image;
+}
+
+TEST(ImageEdges, FindsLinesAsAWholeAndTrenchesBetween) {
+  const ThresholdEdges e = find_edges(lines(), FeatureKind::line);
+  ASSERT_EQ(e.edges.size(), 4u);
+  EXPECT_TRUE(e.edges[0].material_right);
+  EXPECT_FALSE(e.edges[1].material_right);
+  EXPECT_EQ(e.edges[0].feature, e.edges[1].feature);
+  EXPECT_NE(e.edges[1].feature, e.edges[2].feature);
+  const double width = e.edges[1].place_nm - e.edges[0].place_nm;
+  EXPECT_NEAR(width, 86, 3);  // a little outside of the walls
+  EXPECT_NEAR(e.edges[2].place_nm - e.edges[0].place_nm, 170, 0.1);
+  EXPECT_EQ(e.places_nm[0].size(), 20u);
+  EXPECT_NEAR(e.places_nm[0][7], e.edges[0].place_nm, 0.1);
+  const ThresholdEdges gaps = find_edges(lines(), FeatureKind::trench);
+  ASSERT_EQ(gaps.edges.size(), 4u);
+  EXPECT_FALSE(gaps.edges[0].material_right);
+  EXPECT_NEAR(gaps.edges[1].place_nm - gaps.edges[0].place_nm, 170 - width, 0.1);
+}
+
+TEST(ImageEdges, AHigherThresholdLiesFurtherIn) {
+  const double low = find_edges(lines(), FeatureKind::line, 0.2).edges[0].place_nm,
+               high = find_edges(lines(), FeatureKind::line, 0.8).edges[0].place_nm;
+  EXPECT_LT(low + 1, high);
+}
+
+TEST(ImageEdges, AnImageWithoutRimsIsRefused) {
+  PlacedImage flat = lines();
+  std::ranges::fill(flat.values.data(), 3.0);
+  EXPECT_THAT([&] { find_edges(flat, FeatureKind::line); },
+              testing::ThrowsMessage<InvalidInput>(testing::HasSubstr("no line is seen")));
+  EXPECT_THROW(find_hole(flat), InvalidInput);
+}
+
+PlacedImage hole() {
+  PlacedImage image;
+  image.pitch_x_nm = image.pitch_y_nm = 3;
+  image.values = Grid<double>(80, 80);
+  for (int y = 0; y < 80; ++y)
+    for (int x = 0; x < 80; ++x)
+      image.values(x, y) = across(std::hypot(3 * x - 115.0, 3 * y - 124.0) - 60) -
+                           0.4 * (std::hypot(3 * x - 115.0, 3 * y - 124.0) < 50);
+  return image;
+}
+
+TEST(ImageEdges, FindsAHolesMiddleAndRadius) {
+  const Circle c = find_hole(hole());
+  EXPECT_NEAR(c.x_nm, 115, 1.5);
+  EXPECT_NEAR(c.y_nm, 124, 1.5);
+  EXPECT_NEAR(c.radius_nm, 60, 2);
+  const PlacedImage around = unrolled(hole(), {115, 124, 60});
+  EXPECT_NEAR(around.pitch_y_nm * around.values.height(), 2 * M_PI * 60, 1e-6);
+  for (int y = 0; y < around.values.height(); ++y)
+    EXPECT_NEAR(around.values(20, y), 2 + 0.1, 0.25) << y;  // on the rim
+  const ProfileData data = profile_data(hole(), c);
+  EXPECT_TRUE(data.closed);
+  EXPECT_EQ(data.edges.size(), 1u);
+  EXPECT_GT(data.samples.size(), 4000u);
+}
+
+}  // namespace
+}  // namespace surf
