@@ -28,6 +28,7 @@ constexpr double least_height_nm = 1;
 constexpr double largest_corner = 0.35;    // of the height
 constexpr double largest_discrepancy = 3;  // over the allowed one
 constexpr std::size_t cascades = 40960;
+constexpr double matched = 0.5;    // the box about the best match, over the first
 constexpr double narrower = 0.35;  // a box over the one before
 constexpr std::int64_t finer = 4;  // electrons of the last box over those of the others
 
@@ -184,25 +185,77 @@ class OneLibrary : public mc::LibrarySource {
   std::mutex mutex_;
 };
 
-ProfileLibrary simulate_library(const ProfileJob& job, const ProfileBox& box, double pitch_nm,
-                                std::int64_t electrons, std::uint64_t seed,
-                                mc::LibrarySource& libraries, const Watch& watch) {
+/// Simulated signals of a box's shapes, the middle one first.
+struct Signals {
+  ProfileBox box;
+  double first_u_nm = 0, step_nm = 1;
+  std::vector<ProfileNumbers> shapes;
+  std::vector<std::vector<double>> signals;
+  std::vector<double> common_variance;
+};
+
+/// By the same random numbers, so that they differ by their shapes alone, on the level of the
+/// middle one's by many more.
+Signals simulate_signals(const ProfileJob& job, const ProfileBox& box, double pitch_nm,
+                         std::int64_t electrons, std::uint64_t seed, mc::LibrarySource& libraries,
+                         const Watch& watch) {
   WallSimulation how = simulation_of(job, box, pitch_nm);
   how.electrons = electrons;
   how.threads = 1;
-  const std::vector<ProfileNumbers> shapes = profile_design(box);
-  std::vector<std::vector<double>> signals(shapes.size());
+  how.seed = seed;
+  Signals out{box, how.first_u_nm, how.step_nm, profile_design(box), {}, {}};
+  out.signals.resize(out.shapes.size());
   Watch quiet;
   quiet.cancel = watch.cancel;
   parallel_for(
-      shapes.size(), job.threads,
+      out.shapes.size(), job.threads,
       [&](std::size_t i, int) {
-        WallSimulation own = how;
-        own.seed = seed + i;
-        signals[i] = simulate_wall(shape_of(job.kind, pitch_nm, shapes[i]), own, libraries, quiet);
+        out.signals[i] =
+            simulate_wall(shape_of(job.kind, pitch_nm, out.shapes[i]), how, libraries, quiet).mean;
       },
       watch);
-  return {box, how.first_u_nm, how.step_nm, shapes, signals};
+  how.electrons = std::max(electrons, job.middle_electrons);
+  how.threads = job.threads;
+  how.seed = seed + 1;
+  const WallSignal middle =
+      simulate_wall(shape_of(job.kind, pitch_nm, box.middle), how, libraries, quiet);
+  const std::vector<double> before = out.signals.front();
+  for (std::size_t u = 0; u < before.size(); ++u) {
+    for (std::vector<double>& signal : out.signals) signal[u] += middle.mean[u] - before[u];
+    out.common_variance.push_back(middle.standard_error[u] * middle.standard_error[u]);
+  }
+  return out;
+}
+
+ProfileLibrary library_of(const Signals& s) {
+  return {s.box, s.first_u_nm, s.step_nm, s.shapes, s.signals, s.common_variance};
+}
+
+/// The box about the shape whose signal alone is most like the image, gain, offset and places
+/// fitted: over a wide box no quadratic function holds.
+ProfileBox matched_box(const ProfileJob& job, const ProfileData& data, const Signals& s,
+                       const ProfileFitOptions& options, const Watch& watch) {
+  std::vector<double> unlike(s.shapes.size());
+  parallel_for(
+      s.shapes.size(), job.threads,
+      [&](std::size_t i, int) {
+        ProfileFitOptions o = options;
+        o.watch = {};
+        o.prior_mean = s.shapes[i];
+        const ProfileLibrary alone({s.shapes[i], {}}, s.first_u_nm, s.step_nm, {s.shapes[i]},
+                                   {s.signals[i]}, s.common_variance);
+        unlike[i] = fit_profile(data, alone, o).discrepancy_share;
+      },
+      watch);
+  ProfileBox box = s.box;
+  const ProfileNumbers& best =
+      s.shapes[static_cast<std::size_t>(std::ranges::min_element(unlike) - unlike.begin())];
+  for (std::size_t k = 0; k < profile_numbers; ++k) {
+    box.half[k] *= matched;
+    if (k != profile_width) box.middle[k] = best[k];
+    if (k == profile_top || k == profile_foot) box.middle[k] = std::max(box.middle[k], box.half[k]);
+  }
+  return box;
 }
 
 std::vector<std::string> reasons_of(const ProfileJob& job, const ProfileSummary& s) {
@@ -269,13 +322,18 @@ ProfileSummary run(const ProfileJob& job, const Reporter& reporter) {
   ProfileBox box = first;
   for (int round = 0; round < job.rounds; ++round) {
     begin(reporter, "simulation");
-    const ProfileLibrary library = simulate_library(
-        job, box, s.pitch_nm, (round + 1 == job.rounds ? finer : 1) * job.electrons,
+    const bool last = round + 1 == job.rounds;
+    const Signals signals = simulate_signals(
+        job, box, s.pitch_nm, (last ? finer : 1) * job.electrons,
         job.seed + static_cast<std::uint64_t>(round) * 1000, libraries, reporter.watch());
-    s.simulated += static_cast<std::int64_t>(profile_design(box).size());
+    s.simulated += static_cast<std::int64_t>(signals.shapes.size());
     begin(reporter, "fit");
+    if (round == 0 && !last) {
+      box = matched_box(job, data, signals, options, reporter.watch());
+      continue;
+    }
     options.watch = reporter.watch();
-    s.fit = fit_profile(data, library, options);
+    s.fit = fit_profile(data, library_of(signals), options);
     s.discrepancy_share = s.fit.discrepancy_share;
     for (std::size_t e = 0; e < data.edges.size(); ++e)
       data.edges[e].place_nm = s.fit.edges[e].place_nm.value;

@@ -77,6 +77,11 @@ void describe(ParameterVisitor& visit, ProfileJob& job) {
   visit(job.electrons, {.name = "profile.electrons",
                         .help = "Primaries per place of simulated profiles",
                         .limits = within(10, 1'000'000)});
+  visit(job.middle_electrons,
+        {.name = "profile.middle_electrons",
+         .help = "Primaries per place of the middle profile, which tells the level of all",
+         .limits = within(10, 100'000'000),
+         .level = Level::advanced});
   visit(job.rounds, {.name = "profile.rounds",
                      .help = "How often profiles are simulated, each time nearer to what was found",
                      .limits = within(1, 5)});

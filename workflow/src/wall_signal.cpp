@@ -17,8 +17,8 @@ constexpr double heights_around = 4, least_around_nm = 200;
 
 }  // namespace
 
-std::vector<double> simulate_wall(const FeatureShape& shape, const WallSimulation& how,
-                                  mc::LibrarySource& libraries, const Watch& watch) {
+WallSignal simulate_wall(const FeatureShape& shape, const WallSimulation& how,
+                         mc::LibrarySource& libraries, const Watch& watch) {
   mc::Beam beam;
   beam.energy_ev = how.energy_ev;
   beam.spot_nm = how.spot_nm;
@@ -49,9 +49,12 @@ std::vector<double> simulate_wall(const FeatureShape& shape, const WallSimulatio
                    {.watch = watch, .libraries = &libraries});
   if (!result.complete) throw Interrupted();
   const std::size_t detector = how.signal == "BSE" ? 1 : 0;  // of the default ones
-  std::vector<double> out;
-  for (int k = 0; k < how.places; ++k)
-    out.push_back(result.yield(detector, line ? how.places - 1 - k : k, 0).mean);
+  WallSignal out;
+  for (int k = 0; k < how.places; ++k) {
+    const auto yield = result.yield(detector, line ? how.places - 1 - k : k, 0);
+    out.mean.push_back(yield.mean);
+    out.standard_error.push_back(yield.standard_error);
+  }
   return out;
 }
 

@@ -26,9 +26,14 @@ struct WallSimulation {
   int threads = 0;
 };
 
-/// Yields across the right wall of a feature; of a hole, along a radius. Throws Interrupted, and
-/// InvalidInput for shapes that `feature_mesh` refuses.
-std::vector<double> simulate_wall(const FeatureShape& shape, const WallSimulation& simulation,
-                                  mc::LibrarySource& libraries, const Watch& watch = {});
+/// Yields and their standard errors.
+struct WallSignal {
+  std::vector<double> mean, standard_error;
+};
+
+/// The signal across the right wall of a feature; of a hole, along a radius. Throws Interrupted,
+/// and InvalidInput for shapes that `feature_mesh` refuses.
+WallSignal simulate_wall(const FeatureShape& shape, const WallSimulation& simulation,
+                         mc::LibrarySource& libraries, const Watch& watch = {});
 
 }  // namespace surf::workflow

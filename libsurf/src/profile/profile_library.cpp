@@ -61,7 +61,8 @@ std::vector<ProfileNumbers> profile_design(const ProfileBox& box, double per_ter
 
 ProfileLibrary::ProfileLibrary(ProfileBox box, double first_u_nm, double step_nm,
                                const std::vector<ProfileNumbers>& shapes,
-                               const std::vector<std::vector<double>>& signals)
+                               const std::vector<std::vector<double>>& signals,
+                               const std::vector<double>& common_variance)
     : box_(box), first_(first_u_nm), step_(step_nm), free_(free_numbers(box)) {
   terms_ = terms_of(free_.size());
   if (shapes.size() != signals.size() || shapes.size() < terms_)
@@ -94,6 +95,7 @@ ProfileLibrary::ProfileLibrary(ProfileBox box, double first_u_nm, double step_nm
       coefficients_.push_back(fit(static_cast<Eigen::Index>(k), column));
     variance_.push_back(left.col(column).squaredNorm() / freedom * static_cast<double>(terms_) /
                         static_cast<double>(shapes.size()));
+    if (!common_variance.empty()) variance_.back() += common_variance.at(u);
   }
 }
 

@@ -32,11 +32,13 @@ class ProfileLibrary {
     double variance = 0;  ///< of the value, by the simulations' noise and what no quadratic fits
   };
 
-  /// `signals`: per shape the signal at u = first + k step. Throws InvalidInput for fewer shapes
-  /// than terms, signals of different lengths, or values that are not finite.
+  /// `signals`: per shape the signal at u = first + k step, `common_variance`: of what all have in
+  /// common at each u, as by the same random numbers; empty: none. Throws InvalidInput for fewer
+  /// shapes than terms, signals of different lengths, or values that are not finite.
   ProfileLibrary(ProfileBox box, double first_u_nm, double step_nm,
                  const std::vector<ProfileNumbers>& shapes,
-                 const std::vector<std::vector<double>>& signals);
+                 const std::vector<std::vector<double>>& signals,
+                 const std::vector<double>& common_variance = {});
 
   /// Beyond the range of u the signal goes on as at its end.
   Value at(double u_nm, const ProfileNumbers& numbers) const;
