@@ -305,8 +305,7 @@ ProfileSummary run(const ProfileJob& job, const Reporter& reporter) {
     for (const Measured& w : s.threshold_widths_nm)
       width += w.value / static_cast<double>(s.threshold_widths_nm.size());
   }
-  const std::optional<Measured> pitch = pitch_of(s.threshold.edges, {});
-  s.pitch_nm = job.pitch_nm ? *job.pitch_nm : pitch ? pitch->value : 0;
+  s.pitch_nm = job.pitch_nm.value_or(s.threshold.pitch_nm);
   if (job.kind == FeatureKind::edge || job.kind == FeatureKind::hole) s.pitch_nm = 0;
 
   JobLibraries kept(job.cache, reporter.counting("cascades"), reporter.on_note);

@@ -12,8 +12,8 @@
 namespace surf {
 namespace {
 
-constexpr int most_rounds = 8, steps_per_round = 4, row_steps = 2;
-constexpr double settled_nm = 0.01;
+constexpr int most_rounds = 12, steps_per_round = 4, row_steps = 2;
+constexpr double settled_nm = 0.02;
 constexpr double beyond_box = 1.2;  // of the box's half sizes: further away no quadratic holds
 constexpr std::size_t fewest_rows_with_spectrum = 16;
 

@@ -137,13 +137,36 @@ std::vector<std::vector<Rim>> features_of(const std::vector<Rim>& rims, FeatureK
   return out;
 }
 
+/// See ThresholdEdges; in columns.
+double pitch_of(const std::vector<Rim>& rims, const std::vector<double>& y, double threshold) {
+  constexpr double most_uneven = 1.15;
+  std::vector<double> distances;
+  for (const bool right : {false, true}) {
+    double before = std::nan("");
+    for (const Rim& rim : rims) {
+      if (rim.material_right != right) continue;
+      const double place = crossing(y, {rim.top, right ? rim.left : rim.right}, threshold);
+      if (std::isfinite(place - before)) distances.push_back(place - before);
+      before = place;
+    }
+  }
+  if (distances.empty()) return 0;
+  const auto [least, most] = std::ranges::minmax(distances);
+  if (most > most_uneven * least) return 0;
+  return std::accumulate(distances.begin(), distances.end(), 0.0) /
+         static_cast<double>(distances.size());
+}
+
 }  // namespace
 
 ThresholdEdges find_edges(const PlacedImage& image, FeatureKind kind, double threshold) {
   const std::vector<double> mean = smoothed(mean_row(image));
   ThresholdEdges out;
   std::vector<Flank> flanks;
-  const auto features = features_of(rims_of(mean), kind);
+  const std::vector<Rim> rims = rims_of(mean);
+  const auto features = features_of(rims, kind);
+  if (kind == FeatureKind::line || kind == FeatureKind::trench)
+    out.pitch_nm = image.pitch_x_nm * pitch_of(rims, mean, threshold);
   for (std::size_t f = 0; f < features.size(); ++f)
     for (const Rim& rim : features[f]) {
       const Flank flank{rim.top, rim.material_right ? rim.left : rim.right};

@@ -53,6 +53,22 @@ TEST(ImageEdges, FindsLinesAsAWholeAndTrenchesBetween) {
   EXPECT_NEAR(gaps.edges[1].place_nm - gaps.edges[0].place_nm, 170 - width, 0.1);
 }
 
+TEST(ImageEdges, ThePitchIsSeenWhereOneLineAloneIsWhole) {
+  PlacedImage image = lines();
+  EXPECT_NEAR(find_edges(image, FeatureKind::line).pitch_nm, 170, 0.5);
+  PlacedImage part = image;
+  part.values = Grid<double>(120, 20);  // from 90 to 330 nm: the first line's right wall
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 120; ++x) part.values(x, y) = image.values(x + 45, y);
+  const ThresholdEdges one = find_edges(part, FeatureKind::line);
+  EXPECT_EQ(one.edges.size(), 2u);
+  EXPECT_NEAR(one.pitch_nm, 170, 0.5);
+  part.values = Grid<double>(70, 20);  // one line, nothing else
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 70; ++x) part.values(x, y) = image.values(x + 95, y);
+  EXPECT_EQ(find_edges(part, FeatureKind::line).pitch_nm, 0);
+}
+
 TEST(ImageEdges, AHigherThresholdLiesFurtherIn) {
   const double low = find_edges(lines(), FeatureKind::line, 0.2).edges[0].place_nm,
                high = find_edges(lines(), FeatureKind::line, 0.8).edges[0].place_nm;

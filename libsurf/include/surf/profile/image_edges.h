@@ -22,6 +22,9 @@ struct ThresholdEdges {
   std::vector<ImageEdge> edges;                ///< from left to right, by the mean of all rows
   std::vector<std::vector<double>> places_nm;  ///< of each edge, by row; NaN where a row has none
   std::vector<double> rows_nm;                 ///< y of the rows
+  /// Distance at which walls with the ground at one side repeat, features that the image cuts off
+  /// included; 0: they do not.
+  double pitch_nm = 0;
 };
 
 /// Finds the edges of lines, trenches or edges that run along y. Pairs of edges that the image cuts

@@ -24,7 +24,7 @@ struct ProfileJob {
   bool along_x = false;            ///< lines run along x, not y
   double height_nm = 0;            ///< of the walls; required, because no upright view shows it
   double height_error_nm = 0;      ///< its standard error
-  std::optional<double> pitch_nm;  ///< 0: there is one; absent: the distance of those seen
+  std::optional<double> pitch_nm;  ///< 0: there is one; absent: as walls repeat in the image
   double angle_deg = 87, angle_range_deg = 7;    ///< what is simulated to begin with
   double top_radius_nm = 4, foot_radius_nm = 4;  ///< usual radii of corners, as far off as large
   bool walls_apart = false;                      ///< left and right walls have shapes of their own
