@@ -28,6 +28,7 @@ constexpr double least_height_nm = 1;
 constexpr double largest_corner = 0.35;    // of the height
 constexpr double largest_discrepancy = 3;  // over the allowed one
 constexpr std::size_t cascades = 40960;
+constexpr int more_rounds = 2;     // where a number lies at the border of the last box
 constexpr double matched = 0.5;    // the box about the best match, over the first
 constexpr double narrower = 0.35;  // a box over the one before
 constexpr std::int64_t finer = 4;  // electrons of the last box over those of the others
@@ -126,7 +127,10 @@ ProfileBox next_box(const ProfileBox& before, const ProfileBox& first, const Pro
     if (!(box.half[k] > 0)) continue;
     const double apart = 0.5 * std::abs(fit.left[k].value - fit.right[k].value);
     box.middle[k] = 0.5 * (fit.left[k].value + fit.right[k].value);
-    box.half[k] = std::max(narrower * before.half[k], apart + 0.2 * first.half[k]);
+    const double error = std::max(fit.left[k].standard_error, fit.right[k].standard_error);
+    // A number at the border, or one that the image hardly tells, needs more room.
+    box.half[k] = std::max({fit.at_border ? before.half[k] : narrower * before.half[k],
+                            apart + 0.2 * first.half[k], std::min(2 * error, first.half[k])});
     if (k == profile_top || k == profile_foot) box.middle[k] = std::max(box.middle[k], box.half[k]);
   }
   return box;
@@ -191,7 +195,7 @@ struct Signals {
   double first_u_nm = 0, step_nm = 1;
   std::vector<ProfileNumbers> shapes;
   std::vector<std::vector<double>> signals;
-  std::vector<double> common_variance;
+  FinerMiddle middle;
 };
 
 /// By the same random numbers, so that they differ by their shapes alone, on the level of the
@@ -217,18 +221,15 @@ Signals simulate_signals(const ProfileJob& job, const ProfileBox& box, double pi
   how.electrons = std::max(electrons, job.middle_electrons);
   how.threads = job.threads;
   how.seed = seed + 1;
-  const WallSignal middle =
+  WallSignal middle =
       simulate_wall(shape_of(job.kind, pitch_nm, box.middle), how, libraries, quiet);
-  const std::vector<double> before = out.signals.front();
-  for (std::size_t u = 0; u < before.size(); ++u) {
-    for (std::vector<double>& signal : out.signals) signal[u] += middle.mean[u] - before[u];
-    out.common_variance.push_back(middle.standard_error[u] * middle.standard_error[u]);
-  }
+  for (double& e : middle.standard_error) e *= e;
+  out.middle = {std::move(middle.mean), std::move(middle.standard_error)};
   return out;
 }
 
 ProfileLibrary library_of(const Signals& s) {
-  return {s.box, s.first_u_nm, s.step_nm, s.shapes, s.signals, s.common_variance};
+  return {s.box, s.first_u_nm, s.step_nm, s.shapes, s.signals, s.middle};
 }
 
 /// The box about the shape whose signal alone is most like the image, gain, offset and places
@@ -242,8 +243,11 @@ ProfileBox matched_box(const ProfileJob& job, const ProfileData& data, const Sig
         ProfileFitOptions o = options;
         o.watch = {};
         o.prior_mean = s.shapes[i];
+        FinerMiddle own = s.middle;
+        for (std::size_t u = 0; u < own.signal.size(); ++u)
+          own.signal[u] += s.signals[i][u] - s.signals[0][u];
         const ProfileLibrary alone({s.shapes[i], {}}, s.first_u_nm, s.step_nm, {s.shapes[i]},
-                                   {s.signals[i]}, s.common_variance);
+                                   {s.signals[i]}, own);
         unlike[i] = fit_profile(data, alone, o).discrepancy_share;
       },
       watch);
@@ -319,9 +323,11 @@ ProfileSummary run(const ProfileJob& job, const Reporter& reporter) {
   options.prior_deviation = {unknown, job.height_error_nm, unknown, first.half[profile_top],
                              first.half[profile_foot]};
   ProfileBox box = first;
-  for (int round = 0; round < job.rounds; ++round) {
+  for (int round = 0;
+       round < job.rounds || (round < job.rounds + more_rounds && round > 1 && s.fit.at_border);
+       ++round) {
     begin(reporter, "simulation");
-    const bool last = round + 1 == job.rounds;
+    const bool last = round + 1 >= job.rounds;
     const Signals signals = simulate_signals(
         job, box, s.pitch_nm, (last ? finer : 1) * job.electrons,
         job.seed + static_cast<std::uint64_t>(round) * 1000, libraries, reporter.watch());

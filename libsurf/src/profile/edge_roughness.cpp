@@ -21,6 +21,7 @@ constexpr std::size_t fewest_places = 16;
 constexpr int aliases = 3;
 // Neighbouring frequencies of a Hann window are not independent: they count as half as many.
 constexpr double independent_share = 0.51;
+constexpr double usual_hurst = 0.6, hurst_deviation = 0.2;
 constexpr double worth_nats = 3;  // of what is more than noise
 
 enum { log_sigma, log_correlation, hurst, log_noise, numbers };
@@ -35,7 +36,8 @@ EdgeRoughness roughness_of(const Numbers& n) {
   return r;
 }
 
-/// Minus the logarithm of Whittle's likelihood.
+/// Minus the logarithm of Whittle's likelihood, and of a prior of the exponent, which short edges
+/// do not tell.
 struct Whittle {
   const EdgeSpectrum& spectrum;
   double weight, distance_nm;
@@ -46,7 +48,7 @@ struct Whittle {
       const double expected = roughness_density(r, spectrum.frequency_per_nm[i], distance_nm);
       sum += std::log(expected) + spectrum.density_nm3[i] / expected;
     }
-    return weight * sum;
+    return weight * sum + 0.5 * std::pow((r.hurst - usual_hurst) / hurst_deviation, 2);
   }
 };
 

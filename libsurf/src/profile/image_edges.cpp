@@ -16,8 +16,8 @@ namespace surf {
 namespace {
 
 constexpr double smooth_px = 1;
-constexpr double least_rise = 0.3;  // of the strongest rim: lower ones are none
-constexpr double rim_reach_px = 3;  // what lies further from a rim's top is level ground
+constexpr double least_rise = 0.25;  // of the strongest rim: what stands out less is none
+constexpr double rim_reach_px = 3;   // what lies further from a rim's top is level ground
 
 std::vector<double> smoothed(const std::vector<double>& y) {
   constexpr int reach = 3;
@@ -56,20 +56,28 @@ std::vector<double> mean_row(const PlacedImage& image) {
   return out;
 }
 
-/// Tops of bright rims: maxima that rise above the level of the image by a share of the highest.
+/// By how much a place rises above what separates it from higher ones, on the shallower side.
+double prominence(const std::vector<double>& y, std::size_t i) {
+  double saddle = -HUGE_VAL;
+  for (const int step : {-1, 1}) {
+    double least = y[i];
+    for (auto k = static_cast<std::ptrdiff_t>(i);
+         k >= 0 && k < std::ssize(y) && y[static_cast<std::size_t>(k)] <= y[i]; k += step)
+      least = std::min(least, y[static_cast<std::size_t>(k)]);
+    saddle = std::max(saddle, least);
+  }
+  return y[i] - saddle;
+}
+
+/// Tops of bright rims: maxima that stand out by a share of how far the highest does from the level
+/// of the image. Level tops of features may be as bright as that, but do not stand out.
 std::vector<int> rims(const std::vector<double>& y) {
   const double level = median(y), highest = *std::ranges::max_element(y);
   std::vector<int> tops;
-  const auto n = static_cast<int>(y.size());
-  for (int i = 1; i + 1 < n; ++i) {
-    const double here = y[static_cast<std::size_t>(i)];
-    if (!(here - level > least_rise * (highest - level))) continue;
-    bool top = true;
-    for (int k = std::max(0, i - 3); k <= std::min(n - 1, i + 3) && top; ++k)
-      top = y[static_cast<std::size_t>(k)] < here ||
-            (k >= i && y[static_cast<std::size_t>(k)] <= here);
-    if (top) tops.push_back(i);
-  }
+  for (std::size_t i = 1; i + 1 < y.size(); ++i)
+    if (y[i] > y[i - 1] && y[i] >= y[i + 1] && y[i] > level &&
+        prominence(y, i) > least_rise * (highest - level))
+      tops.push_back(static_cast<int>(i));
   return tops;
 }
 

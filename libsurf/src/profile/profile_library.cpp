@@ -42,6 +42,22 @@ struct Cubic {
   }
 };
 
+/// A number's effect on the signal counts as far as it is more than chance around (Wiener): chance
+/// in each place would look like something that the image tells.
+void keep_what_shows(Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> effect,
+                     const Eigen::RowVectorXd& variance) {
+  constexpr int reach = 4;
+  Eigen::RowVectorXd kept = effect;
+  for (Eigen::Index u = 0; u < effect.size(); ++u) {
+    const Eigen::Index from = std::max<Eigen::Index>(0, u - reach),
+                       count = std::min<Eigen::Index>(effect.size(), u + reach + 1) - from;
+    const double seen = effect.segment(from, count).squaredNorm(),
+                 chance = variance.segment(from, count).sum();
+    kept(u) *= seen > 0 ? std::max(0.0, 1 - chance / seen) : 0;
+  }
+  effect = kept;
+}
+
 }  // namespace
 
 std::vector<ProfileNumbers> profile_design(const ProfileBox& box, double per_term) {
@@ -62,7 +78,7 @@ std::vector<ProfileNumbers> profile_design(const ProfileBox& box, double per_ter
 ProfileLibrary::ProfileLibrary(ProfileBox box, double first_u_nm, double step_nm,
                                const std::vector<ProfileNumbers>& shapes,
                                const std::vector<std::vector<double>>& signals,
-                               const std::vector<double>& common_variance)
+                               const FinerMiddle& middle)
     : box_(box), first_(first_u_nm), step_(step_nm), free_(free_numbers(box)) {
   terms_ = terms_of(free_.size());
   if (shapes.size() != signals.size() || shapes.size() < terms_)
@@ -85,17 +101,28 @@ ProfileLibrary::ProfileLibrary(ProfileBox box, double first_u_nm, double step_nm
       values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(u)) = signals[i][u];
     }
   }
+  const bool finer = !middle.signal.empty();
+  if (finer && (middle.signal.size() != count_ || middle.variance.size() != count_))
+    throw InvalidInput("profiles", "the finer middle has another length", "Give the same places");
   const auto solver = design.colPivHouseholderQr();
-  const Eigen::MatrixXd fit = solver.solve(values);
+  Eigen::MatrixXd fit = solver.solve(values);
   const Eigen::MatrixXd left = values - design * fit;
-  const double freedom = std::max<double>(1, static_cast<double>(shapes.size() - terms_));
+  const double freedom = std::max<double>(1, static_cast<double>(shapes.size() - terms_)),
+               fitted = static_cast<double>(finer ? terms_ - 1 : terms_);
+  const Eigen::VectorXd noise = left.colwise().squaredNorm().transpose() / freedom;
+  const Eigen::MatrixXd inverse =
+      (design.transpose() * design)
+          .ldlt()
+          .solve(Eigen::MatrixXd::Identity(design.cols(), design.cols()));
+  for (Eigen::Index k = 1; k < fit.rows(); ++k)
+    keep_what_shows(fit.row(k), noise.transpose() * inverse(k, k));
   for (std::size_t u = 0; u < count_; ++u) {
     const auto column = static_cast<Eigen::Index>(u);
+    if (finer) fit(0, column) = middle.signal[u];
     for (std::size_t k = 0; k < terms_; ++k)
       coefficients_.push_back(fit(static_cast<Eigen::Index>(k), column));
-    variance_.push_back(left.col(column).squaredNorm() / freedom * static_cast<double>(terms_) /
-                        static_cast<double>(shapes.size()));
-    if (!common_variance.empty()) variance_.back() += common_variance.at(u);
+    variance_.push_back(noise(column) * fitted / static_cast<double>(shapes.size()) +
+                        (finer ? middle.variance[u] : 0));
   }
 }
 

@@ -69,6 +69,14 @@ TEST(ImageEdges, ThePitchIsSeenWhereOneLineAloneIsWhole) {
   EXPECT_EQ(find_edges(part, FeatureKind::line).pitch_nm, 0);
 }
 
+TEST(ImageEdges, NoiseOfABrightTopIsNoRim) {
+  PlacedImage image = lines();
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 200; ++x)
+      image.values(x, y) += 0.05 * std::sin(1.7 * x) * (image.values(x, y) > 0.5);
+  EXPECT_EQ(find_edges(image, FeatureKind::line).edges.size(), 4u);
+}
+
 TEST(ImageEdges, AHigherThresholdLiesFurtherIn) {
   const double low = find_edges(lines(), FeatureKind::line, 0.2).edges[0].place_nm,
                high = find_edges(lines(), FeatureKind::line, 0.8).edges[0].place_nm;

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "afm/normal_numbers.h"
 #include "surf/core/error.h"
 
 namespace surf {
@@ -60,6 +61,44 @@ TEST(ProfileLibrary, KnowsQuadraticsExactlyAndItsDerivatives) {
     EXPECT_NEAR(v.by_number[k], (lib.at(u, up).value - lib.at(u, down).value) / (2 * step), 1e-6);
   }
   EXPECT_EQ(v.by_number[profile_height], 0);
+}
+
+TEST(ProfileLibrary, AFinerMiddleGivesTheLevel) {
+  const auto shapes = profile_design(box);
+  std::vector<std::vector<double>> signals;
+  for (const ProfileNumbers& n : shapes) {
+    signals.emplace_back();  // all are off alike, as by the same random numbers
+    for (int k = 0; k <= 80; ++k)
+      signals.back().push_back(quadratic(-20 + 0.5 * k, n) + 0.3 * std::sin(7.0 * k));
+  }
+  FinerMiddle middle{{}, std::vector<double>(81, 1e-4)};
+  for (int k = 0; k <= 80; ++k) middle.signal.push_back(quadratic(-20 + 0.5 * k, box.middle));
+  const ProfileLibrary lib(box, -20, 0.5, shapes, signals, middle);
+  const ProfileNumbers n{82, 100, 84.5, 5, 2.2};
+  EXPECT_NEAR(lib.at(3.5, n).value, quadratic(3.5, n), 1e-9);
+  EXPECT_NEAR(lib.at(3.5, n).variance, 1e-4, 1e-12);
+  middle.variance.pop_back();
+  EXPECT_THROW(ProfileLibrary(box, -20, 0.5, shapes, signals, middle), InvalidInput);
+}
+
+TEST(ProfileLibrary, NoiseOfSignalsIsNoEffectOfTheShape) {
+  const auto shapes = profile_design(box);
+  std::vector<std::vector<double>> signals;
+  NormalNumbers normal(3, 1);
+  for (const ProfileNumbers& n : shapes) {
+    signals.emplace_back();  // the angle shows about u = 0 alone
+    for (int k = 0; k <= 160; ++k)
+      signals.back().push_back(
+          1 + 0.1 * (n[profile_angle] - 86) * std::exp(-std::pow(0.25 * k - 20, 2)) +
+          0.1 * normal());
+  }
+  const ProfileLibrary lib(box, -40, 0.5, shapes, signals);
+  double far = 0;
+  for (double u = -39; u < -10; u += 0.5)
+    far += std::pow(lib.at(u, box.middle).by_number[profile_angle], 2) / 58;
+  // One place knows the slope to 0.1 / (4 / sqrt(3)) / sqrt(38) = 0.007 per degree.
+  EXPECT_LT(std::sqrt(far), 0.0045);
+  EXPECT_NEAR(lib.at(0, box.middle).by_number[profile_angle], 0.1, 0.03);
 }
 
 TEST(ProfileLibrary, GoesOnLevelBeyondItsEnds) {

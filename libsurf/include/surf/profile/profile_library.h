@@ -22,6 +22,12 @@ struct ProfileBox {
 /// (Halton's sequence), enough for all linear and quadratic terms with `per_term` points each.
 std::vector<ProfileNumbers> profile_design(const ProfileBox& box, double per_term = 2.5);
 
+/// The middle shape's signal as it is known better than by the design's: its values and their
+/// variances at the places of the signals.
+struct FinerMiddle {
+  std::vector<double> signal, variance;
+};
+
 /// The signal across a wall, u nm from the middle of its flank, material at positive u, by a
 /// quadratic function of the shape's numbers at each u, which is fitted to simulated signals.
 class ProfileLibrary {
@@ -32,13 +38,12 @@ class ProfileLibrary {
     double variance = 0;  ///< of the value, by the simulations' noise and what no quadratic fits
   };
 
-  /// `signals`: per shape the signal at u = first + k step, `common_variance`: of what all have in
-  /// common at each u, as by the same random numbers; empty: none. Throws InvalidInput for fewer
-  /// shapes than terms, signals of different lengths, or values that are not finite.
+  /// `signals`: per shape the signal at u = first + k step; `middle`: if it is not empty, the level
+  /// of all is its, and `signals` say how shapes differ. Throws InvalidInput for fewer shapes than
+  /// terms, signals of different lengths, or values that are not finite.
   ProfileLibrary(ProfileBox box, double first_u_nm, double step_nm,
                  const std::vector<ProfileNumbers>& shapes,
-                 const std::vector<std::vector<double>>& signals,
-                 const std::vector<double>& common_variance = {});
+                 const std::vector<std::vector<double>>& signals, const FinerMiddle& middle = {});
 
   /// Beyond the range of u the signal goes on as at its end.
   Value at(double u_nm, const ProfileNumbers& numbers) const;

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/workflow/profile_job.h"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "surf/core/error.h"
+#include "surf/io/files.h"
+#include "surf/io/sim/materials.h"
+#include "surf/mc/simulate.h"
+#include "surf/workflow/libraries.h"
+#include "temporary_folder.h"
+
+namespace surf::workflow {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::ThrowsMessage;
+
+constexpr double energy_ev = 300, pixel_nm = 2, gain = 500, offset = 40;
+
+/// Lines of silicon, 40 nm wide and 30 nm high, at 300 eV.
+class ProfileJobTest : public testing::Test {
+ protected:
+  static PlacedImage lines(double angle_deg) {
+    const FeatureShape shape{FeatureKind::line, 40, 100, {30, angle_deg, 2, 2}};
+    mc::Specimen specimen;
+    specimen.materials = {io::find_material("Si", "test")};
+    specimen.bodies.push_back({"lines", feature_mesh(shape, 400), 0});
+    mc::Beam beam;
+    beam.energy_ev = energy_ev;
+    mc::Scan scan;
+    scan.width = 90;
+    scan.height = 24;
+    scan.pixel_x_nm = scan.pixel_y_nm = pixel_nm;
+    mc::SimulationOptions options;
+    options.budget = mc::ElectronsPerPixel{60};
+    options.seed = 5;
+    const mc::SimulationResult done = mc::simulate(mc::Scene(specimen, beam, scan), options, {});
+    PlacedImage image;
+    image.pitch_x_nm = image.pitch_y_nm = pixel_nm;
+    image.values = Grid<double>(scan.width, scan.height);
+    for (int y = 0; y < scan.height; ++y)
+      for (int x = 0; x < scan.width; ++x)
+        image.values(x, y) = offset + gain * done.yield(0, x, y).mean;
+    return image;
+  }
+
+  ProfileJobTest() {
+    static const PlacedImage image = lines(84);
+    job_.sem.image = image;
+    job_.sem.file = "lines.tif";
+    io::write_text(folder_.path() / "lines.tif", "the image");
+    job_.sem.file = folder_.path() / "lines.tif";
+    job_.material = io::find_material("Si", "test");
+    job_.energy_ev = energy_ev;
+    job_.height_nm = 30;
+    job_.angle_deg = 85, job_.angle_range_deg = 3;
+    job_.top_radius_nm = job_.foot_radius_nm = 2;
+    job_.electrons = 120, job_.middle_electrons = 3000;
+    job_.rounds = 1;
+    job_.picture = false;
+    static const test::TemporaryFolder cascades;
+    job_.cache = cascades.path();
+    job_.folder = folder_.path() / "result";
+  }
+
+  test::TemporaryFolder folder_;
+  ProfileJob job_;
+};
+
+TEST_F(ProfileJobTest, MeasuresLinesAndSaysHowWell) {
+  const ProfileSummary s = run(job_);
+  EXPECT_THAT(s.reasons, IsEmpty());
+  const Measured width = s.fit.left[profile_width], angle = s.fit.left[profile_angle];
+  EXPECT_NEAR(width.value, 40, 1.2);
+  EXPECT_GT(width.standard_error, 0.05);
+  EXPECT_LT(width.standard_error, 0.6);
+  EXPECT_NEAR(angle.value, 84, 2.5);
+  EXPECT_LT(angle.standard_error, 2);
+  EXPECT_NEAR(s.fit.gain, gain, 0.2 * gain);
+  EXPECT_NEAR(s.pitch_nm, 100, 1);
+  EXPECT_NEAR(s.threshold_widths_nm.front().value, 40, 5);
+
+  const auto json = nlohmann::json::parse(io::read_file(job_.folder / "profile.json"));
+  EXPECT_EQ(json["width_nm"]["value"], width.value);
+  EXPECT_EQ(json["parameters"]["profile.height_nm"], "30");
+  EXPECT_TRUE(json["trusted"]);
+  for (const char* file : {"edges.csv", "profiles.csv", "spectrum.csv"})
+    EXPECT_TRUE(fs::exists(job_.folder / file)) << file;
+}
+
+TEST_F(ProfileJobTest, LinesAlongXAreTurnedAndThreadsChangeNothing) {
+  job_.electrons = 30, job_.middle_electrons = 300;
+  ProfileJob turned = job_;
+  const PlacedImage& image = job_.sem.image;
+  turned.sem.image.values = Grid<double>(image.values.height(), image.values.width());
+  for (int y = 0; y < image.values.height(); ++y)
+    for (int x = 0; x < image.values.width(); ++x)
+      turned.sem.image.values(y, x) = image.values(x, y);
+  turned.folder.clear();
+  turned.along_x = true;
+  turned.threads = 1;
+  job_.folder.clear();
+  EXPECT_EQ(run(turned).fit.left[profile_width].value, run(job_).fit.left[profile_width].value);
+}
+
+TEST_F(ProfileJobTest, SaysThatNoProfileIsLikeTheImage) {
+  // Dark on top, as no silicon is.
+  for (int y = 0; y < 24; ++y)
+    for (int x = 41; x < 49; ++x) job_.sem.image.values(x, y) = 720;
+  job_.folder.clear();
+  EXPECT_FALSE(run(job_).reasons.empty());
+}
+
+TEST_F(ProfileJobTest, RefusesWhatItCannotMeasure) {
+  const auto refused = [&](const char* what) {
+    EXPECT_THAT([&] { run(job_); }, ThrowsMessage<Error>(HasSubstr(what)));
+  };
+  job_.height_nm = 0;
+  refused("profile.height");
+  job_.height_nm = 30;
+  job_.signal = "CL";
+  refused("profile.signal");
+  job_.signal = "SE";
+  job_.sem.image.pitch_y_nm = 3;
+  refused("not square");
+  job_.sem.image.pitch_y_nm = pixel_nm;
+  job_.material.name.clear();
+  refused("specimen.material");
+  job_.material = io::find_material("Si", "test");
+  for (double& v : job_.sem.image.values.data()) v = 100;
+  refused("no line is seen");
+  EXPECT_FALSE(fs::exists(job_.folder));
+}
+
+TEST_F(ProfileJobTest, CanBeInterrupted) {
+  CancelToken token;
+  Reporter listener;
+  listener.cancel = &token;
+  token.cancel();
+  EXPECT_THROW(run(job_, listener), Interrupted);
+  EXPECT_FALSE(fs::exists(job_.folder));
+}
+
+}  // namespace
+}  // namespace surf::workflow
