@@ -220,10 +220,10 @@ TEST(HelpDefaults, AreThoseOfTheStructs) {
 TEST(HelpDefaults, EveryCommandIsLookedAt) {
   EXPECT_THAT(
       commands_of({}),
-      testing::ElementsAre("simulate", "sweep", "train", "predict", "estimate", "level", "clean",
-                           "noise", "tip", "erode", "dilate", "open", "close", "certainty",
-                           "sample", "register", "calibrate", "reconstruct", "profile", "info",
-                           "view", "mesh", "materials", "library", "chart", "completion"));
+      testing::ElementsAre("simulate", "sweep", "train", "predict", "estimate", "profile", "level",
+                           "clean", "noise", "tip", "erode", "dilate", "open", "close", "certainty",
+                           "sample", "register", "calibrate", "reconstruct", "info", "view", "mesh",
+                           "materials", "library", "chart", "completion"));
   EXPECT_THAT(commands_of({"sweep"}), testing::ElementsAre("join"));
   EXPECT_THAT(commands_of({"library"}), testing::ElementsAre("list", "build", "plot", "remove"));
   const auto options = options_of({"reconstruct"});

@@ -386,6 +386,8 @@ class Fit {
         if (at == layout_.free.end()) continue;
         wall[k].standard_error =
             error(layout_.wall(side) + static_cast<int>(at - layout_.free.begin()));
+        // What is known beforehand may lie there: the library's box is its prior's.
+        if (std::isfinite(options_.prior_deviation[k])) continue;
         out.at_border = out.at_border || std::abs(numbers_[side][k] - box.middle[k]) >
                                              beyond_box * box.half[k] - 1e-9;
       }

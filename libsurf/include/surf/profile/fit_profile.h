@@ -73,7 +73,7 @@ struct ProfileFit {
   /// What the simulation is off by, root mean square over the signal's contrast.
   double discrepancy_share = 0;
   bool converged = false;
-  bool at_border = false;  ///< a number lies at the border of the library's box
+  bool at_border = false;  ///< a number without a prior lies at the border of the library's box
 };
 
 /// Fits shape, gain, offset and the place of each edge in each row. Places of rows are smoothed by

@@ -30,9 +30,9 @@ constexpr double unguided_bias = 0.5;  // where windows are all there is
 constexpr double most_variance_scale = 4;
 constexpr double detail_sigma_px = 1.5;
 constexpr double detail_ranks[detail_classes] = {0.5, 0.85, 0.97};  // of the middle of each class
-constexpr std::array<double, 2> peak_contrast{1.5, 2.5};    // of counts over those around: none, full
-constexpr std::array<double, 2> peak_deviations{4, 6};  // and by how many of their deviations
-constexpr double risk_sigma_px = 5;  // of the pixels whose risk is averaged
+constexpr std::array<double, 2> peak_contrast{1.5, 2.5};  // of counts over those around: none, full
+constexpr std::array<double, 2> peak_deviations{4, 6};    // and by how many of their deviations
+constexpr double risk_sigma_px = 5;                       // of the pixels whose risk is averaged
 // A pixel that differs from its estimate by more than this many standard deviations of its counts
 // keeps what is beyond (Efron and Morris 1972, doi:10.1080/01621459.1972.10481215).
 constexpr double most_deviations = 4;

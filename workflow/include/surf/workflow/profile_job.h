@@ -32,12 +32,12 @@ struct ProfileJob {
   mc::Material material;
   mc::Physics physics;
   double energy_ev = 1000, spot_nm = 0;
-  std::string signal = "SE";     ///< what the image shows: SE or BSE
+  std::string signal = "SE";  ///< what the image shows: SE or BSE
   /// Primaries per simulated place of shapes, which tell how signals differ, and of the middle one,
   /// which tells the level of all.
   std::int64_t electrons = 500, middle_electrons = 20'000;
-  int rounds = 3;  ///< libraries that are simulated, each about the fit before
-  double model_error = 0.05;     ///< see ProfileFitOptions
+  int rounds = 3;             ///< libraries that are simulated, each about the fit before
+  double model_error = 0.05;  ///< see ProfileFitOptions
   std::uint64_t seed = 1;
   std::filesystem::path cache;   ///< where libraries of cascades are kept; empty: nowhere
   int threads = 0;               ///< 0: one per hardware thread. Does not change the result
