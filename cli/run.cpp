@@ -211,8 +211,7 @@ void add_commands(CLI::App& app, Action& action, const std::string& command_line
     };
     (added(add), ...);
   };
-  group("SEM", add_simulate, add_sweep, add_train, add_predict, add_estimate,
-        add_profile);
+  group("SEM", add_simulate, add_sweep, add_train, add_predict, add_estimate, add_profile);
   group("AFM", add_level, add_clean, add_noise, add_tip, add_erode, add_dilate, add_open, add_close,
         add_certainty);
   group("AFM + SEM", add_sample, add_register, add_calibrate, add_reconstruct);
