@@ -38,7 +38,7 @@ struct ProfileFitOptions {
   /// width follows from the edges' places.
   ProfileNumbers prior_mean{}, prior_deviation{};
   /// What the simulation may be off by: a share of the signal's contrast, correlated over some nm.
-  double model_error = 0.05, model_error_nm = 4;
+  double model_error = 0.08, model_error_nm = 4;
   Watch watch;
 };
 

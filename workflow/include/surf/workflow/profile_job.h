@@ -37,7 +37,7 @@ struct ProfileJob {
   /// which tells the level of all.
   std::int64_t electrons = 500, middle_electrons = 20'000;
   int rounds = 3;             ///< libraries that are simulated, each about the fit before
-  double model_error = 0.05;  ///< see ProfileFitOptions
+  double model_error = 0.08;  ///< see ProfileFitOptions
   std::uint64_t seed = 1;
   std::filesystem::path cache;   ///< where libraries of cascades are kept; empty: nowhere
   int threads = 0;               ///< 0: one per hardware thread. Does not change the result
