@@ -137,6 +137,34 @@ TEST_F(ProfileJobTest, RefusesWhatItCannotMeasure) {
   EXPECT_FALSE(fs::exists(job_.folder));
 }
 
+TEST_F(ProfileJobTest, WallsThatCannotBeAreNotSimulated) {
+  // Of the box's flattest walls the top would have no width.
+  job_.height_nm = 150, job_.angle_deg = 85, job_.angle_range_deg = 6;
+  job_.electrons = 10, job_.middle_electrons = 10;
+  job_.folder.clear();
+  EXPECT_NO_THROW(run(job_));
+  job_.angle_deg = 60;
+  EXPECT_THAT([&] { run(job_); }, ThrowsMessage<UsageError>(HasSubstr("profile.angle")));
+}
+
+TEST_F(ProfileJobTest, LeftAndRightAreTheFeaturesOwn) {
+  // Of a gap the left wall has its ground at the right.
+  job_.kind = FeatureKind::trench;
+  job_.walls_apart = true;
+  job_.electrons = 10, job_.middle_electrons = 10;
+  PlacedImage& image = job_.sem.image;
+  for (int y = 0; y < 24; ++y)  // between 20 and 80 nm: a gap; its left wall is blurred
+    for (int x = 50; x < 60; ++x) image.values(x, y) = 0.5 * (image.values(x, y) + 700);
+  const ProfileSummary s = run(job_);
+  const std::string csv = io::read_file(job_.folder / "profiles.csv");
+  ASSERT_EQ(s.fit.profiles.size(), 2u);
+  EXPECT_EQ(csv.substr(csv.find('\n') + 1, 5),
+            s.fit.profiles[0].material_right ? "right" : "left,");
+  for (const FittedEdge& e : s.fit.edges)
+    EXPECT_EQ(e.edge.material_right, e.place_nm.value > 45 + 4 || e.place_nm.value < -40)
+        << e.place_nm.value;
+}
+
 TEST_F(ProfileJobTest, CanBeInterrupted) {
   CancelToken token;
   Reporter listener;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <numbers>
 
 #include "chain_steps.h"
 #include "job_libraries.h"
@@ -22,6 +23,7 @@
 namespace surf::workflow {
 namespace {
 
+constexpr double degree = std::numbers::pi / 180;
 constexpr double width_range = 0.08;    // half of the box, of the width
 constexpr double most_beside_nm = 250;  // of ground and top that is simulated
 constexpr double least_height_nm = 1;
@@ -43,6 +45,11 @@ void check(const ProfileJob& job) {
   if (job.signal != "SE" && job.signal != "BSE")
     throw UsageError("`profile.signal`", fmt::format("'{}' is not simulated", job.signal),
                      "Give SE or BSE");
+  std::error_code ignored;
+  if (std::filesystem::exists(job.folder, ignored) &&
+      !std::filesystem::is_directory(job.folder, ignored))
+    throw UsageError("`output`", fmt::format("{} is no folder", job.folder.string()),
+                     "Name a folder for all results, as `output=result`");
   validate(job.sem.image, "SEM image");
   if (std::abs(job.sem.image.pitch_x_nm / job.sem.image.pitch_y_nm - 1) > 1e-3)
     throw InvalidInput("SEM image", "its pixels are not square", "Resample it");
@@ -60,6 +67,7 @@ PlacedImage transposed(const PlacedImage& image) {
       out.valid(y, x) = image.is_valid(x, y);
     }
   std::swap(out.origin_x_nm, out.origin_y_nm);
+  std::swap(out.pitch_x_nm, out.pitch_y_nm);
   return out;
 }
 
@@ -143,6 +151,38 @@ FeatureShape shape_of(FeatureKind kind, double pitch_nm, const ProfileNumbers& n
           {n[profile_height], n[profile_angle], n[profile_top], n[profile_foot]}};
 }
 
+bool is_possible(FeatureKind kind, double pitch_nm, const ProfileNumbers& n) {
+  if (!(n[profile_height] > 0)) return false;
+  try {
+    feature_mesh(shape_of(kind, pitch_nm, n), 1);
+    return true;
+  } catch (const InvalidInput&) {
+    return false;
+  }
+}
+
+/// The box's shapes; those that no feature can have are drawn towards the middle until one can.
+std::vector<ProfileNumbers> shapes_of(const ProfileJob& job, const ProfileBox& box,
+                                      double pitch_nm) {
+  std::vector<ProfileNumbers> shapes = profile_design(box);
+  if (!is_possible(job.kind, pitch_nm, box.middle))
+    throw UsageError(
+        "`profile.angle`",
+        fmt::format("walls of {} at {:g} degrees, {} high, would meet in a {} {} wide{}",
+                    job.material.name, box.middle[profile_angle],
+                    format_length(box.middle[profile_height]), name(job.kind),
+                    format_length(box.middle[profile_width]),
+                    pitch_nm > 0 ? fmt::format(" at a pitch of {}", format_length(pitch_nm)) : ""),
+        "Check `profile.height`, `profile.pitch` and the radii, or say steeper walls, as "
+        "`profile.angle=89deg`");
+  constexpr double nearer = 0.7;
+  for (ProfileNumbers& shape : shapes)
+    while (!is_possible(job.kind, pitch_nm, shape))
+      for (std::size_t k = 0; k < profile_numbers; ++k)
+        shape[k] = box.middle[k] + nearer * (shape[k] - box.middle[k]);
+  return shapes;
+}
+
 /// How far beside the wall signals are simulated: to the middle of what is narrow, or as far as the
 /// wall is felt.
 WallSimulation simulation_of(const ProfileJob& job, const ProfileBox& box, double pitch_nm) {
@@ -151,7 +191,10 @@ WallSimulation simulation_of(const ProfileJob& job, const ProfileBox& box, doubl
   beam.energy_ev = job.energy_ev;
   beam.spot_nm = job.spot_nm;
   const double reach = mc::reach_nm(mc::make_medium(job.material, job.physics), beam);
-  const double felt = std::min(most_beside_nm, 30 + job.height_nm + reach + 4 * job.spot_nm);
+  double wall = 0;  // as far as the box's flattest goes from its middle
+  for (const ProfileNumbers& n : profile_design(box))
+    wall = std::max(wall, 0.5 * n[profile_height] / std::tan(n[profile_angle] * degree));
+  const double felt = wall + std::min(most_beside_nm, 30 + job.height_nm + reach + 4 * job.spot_nm);
   const double smallest = box.middle[profile_width] - box.half[profile_width],
                widest = box.middle[profile_width] + box.half[profile_width];
   double inner = std::min(felt, 0.5 * smallest),
@@ -207,10 +250,17 @@ Signals simulate_signals(const ProfileJob& job, const ProfileBox& box, double pi
   how.electrons = electrons;
   how.threads = 1;
   how.seed = seed;
-  Signals out{box, how.first_u_nm, how.step_nm, profile_design(box), {}, {}};
+  Signals out{box, how.first_u_nm, how.step_nm, shapes_of(job, box, pitch_nm), {}, {}};
   out.signals.resize(out.shapes.size());
   Watch quiet;
   quiet.cancel = watch.cancel;
+  // The middle one first, which brings the library of cascades.
+  WallSimulation fine = how;
+  fine.electrons = std::max(electrons, job.middle_electrons);
+  fine.threads = job.threads;
+  fine.seed = seed + 1;
+  WallSignal middle =
+      simulate_wall(shape_of(job.kind, pitch_nm, box.middle), fine, libraries, quiet);
   parallel_for(
       out.shapes.size(), job.threads,
       [&](std::size_t i, int) {
@@ -218,11 +268,6 @@ Signals simulate_signals(const ProfileJob& job, const ProfileBox& box, double pi
             simulate_wall(shape_of(job.kind, pitch_nm, out.shapes[i]), how, libraries, quiet).mean;
       },
       watch);
-  how.electrons = std::max(electrons, job.middle_electrons);
-  how.threads = job.threads;
-  how.seed = seed + 1;
-  WallSignal middle =
-      simulate_wall(shape_of(job.kind, pitch_nm, box.middle), how, libraries, quiet);
   for (double& e : middle.standard_error) e *= e;
   out.middle = {std::move(middle.mean), std::move(middle.standard_error)};
   return out;
@@ -241,7 +286,7 @@ ProfileBox matched_box(const ProfileJob& job, const ProfileData& data, const Sig
       s.shapes.size(), job.threads,
       [&](std::size_t i, int) {
         ProfileFitOptions o = options;
-        o.watch = {};
+        o.watch = {{}, watch.cancel};
         o.prior_mean = s.shapes[i];
         FinerMiddle own = s.middle;
         for (std::size_t u = 0; u < own.signal.size(); ++u)
@@ -268,8 +313,8 @@ std::vector<std::string> reasons_of(const ProfileJob& job, const ProfileSummary&
     reasons.push_back("the fit had not settled: look at the edges that were found, in panel.png");
   if (s.fit.at_border)
     reasons.push_back(
-        "a number of the shape lies at the border of what was simulated: say `profile.angle`, "
-        "`profile.angle_range`, `profile.top_radius` or `profile.foot_radius` nearer to it");
+        "width or angle lie at the border of what was simulated: say `profile.angle` nearer to "
+        "it, or a wider `profile.angle_range`");
   if (job.model_error > 0 && s.discrepancy_share > largest_discrepancy * job.model_error)
     reasons.push_back(
         fmt::format("no simulated profile is like the measured one: {:.0f} % of the contrast stay "
@@ -283,7 +328,8 @@ std::vector<std::string> reasons_of(const ProfileJob& job, const ProfileSummary&
 ProfileSummary run(const ProfileJob& job, const Reporter& reporter) {
   check(job);
   ProfileSummary s;
-  const PlacedImage image = job.along_x ? transposed(job.sem.image) : job.sem.image;
+  const PlacedImage image =
+      job.along_x && job.kind != FeatureKind::hole ? transposed(job.sem.image) : job.sem.image;
   ProfileData data;
   if (job.kind == FeatureKind::hole) {
     s.hole = find_hole(image);
@@ -297,7 +343,7 @@ ProfileSummary run(const ProfileJob& job, const Reporter& reporter) {
         s.threshold.places_nm[static_cast<std::size_t>(nearest - s.threshold.edges.begin())]};
     s.threshold.edges = {*nearest};
     s.hole->radius_nm = nearest->place_nm;
-    data = profile_data(image, *s.hole);
+    data = profile_data(image, *s.hole, nearest->to_nm);
   } else {
     s.threshold = find_edges(image, job.kind, job.threshold);
     data = profile_data(image, s.threshold.edges);
@@ -323,8 +369,7 @@ ProfileSummary run(const ProfileJob& job, const Reporter& reporter) {
   options.prior_deviation = {unknown, job.height_error_nm, unknown, first.half[profile_top],
                              first.half[profile_foot]};
   ProfileBox box = first;
-  for (int round = 0;
-       round < job.rounds || (round < job.rounds + more_rounds && round > 1 && s.fit.at_border);
+  for (int round = 0; round < job.rounds || (round < job.rounds + more_rounds && s.fit.at_border);
        ++round) {
     begin(reporter, "simulation");
     const bool last = round + 1 >= job.rounds;
@@ -344,6 +389,8 @@ ProfileSummary run(const ProfileJob& job, const Reporter& reporter) {
       data.edges[e].place_nm = s.fit.edges[e].place_nm.value;
     box = next_box(box, first, s.fit);
   }
+  // The wall at the left of a gap has its ground at the right.
+  if (job.kind == FeatureKind::trench) std::swap(s.fit.left, s.fit.right);
   std::vector<double> errors;
   for (const FittedEdge& e : s.fit.edges) errors.push_back(e.place_nm.standard_error);
   s.measured_pitch_nm = pitch_of(data.edges, errors);

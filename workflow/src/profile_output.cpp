@@ -59,7 +59,8 @@ Json report(const ProfileJob& job, const ProfileSummary& s) {
   for (const Measured& w : s.threshold_widths_nm)
     json["threshold_method"]["widths_nm"].push_back(measured(w));
   json["threshold_method"]["threshold"] = job.threshold;
-  json["edge_roughness"] = roughness_json(s.fit.edge_roughness);
+  if (!s.fit.edge_spectrum.density_nm3.empty())
+    json["edge_roughness"] = roughness_json(s.fit.edge_roughness);
   if (!s.fit.width_spectrum.density_nm3.empty())
     json["width_roughness"] = roughness_json(s.fit.width_roughness);
   json["gain"] = s.fit.gain;
@@ -82,9 +83,12 @@ std::string edges_csv(const ProfileSummary& s) {
     text += std::to_string(r);
     for (std::size_t e = 0; e < s.fit.edges.size(); ++e) {
       const auto& threshold = s.threshold.places_nm[e];
-      text +=
-          fmt::format(",{:.4f},{:.4f},", s.fit.edges[e].rows_nm[r], s.fit.edges[e].errors_nm[r]);
-      if (r < threshold.size() && std::isfinite(threshold[r]))
+      const double error = s.fit.edges[e].errors_nm[r];  // none: the row does not show the edge
+      text += std::isfinite(error)
+                  ? fmt::format(",{:.4f},{:.4f},", s.fit.edges[e].rows_nm[r], error)
+                  : ",,,";
+      // Directions about a hole are others there.
+      if (!s.hole && r < threshold.size() && std::isfinite(threshold[r]))
         text += fmt::format("{:.4f}", threshold[r]);
     }
     text += "\n";
@@ -92,12 +96,18 @@ std::string edges_csv(const ProfileSummary& s) {
   return text;
 }
 
-std::string profiles_csv(const ProfileSummary& s) {
+/// Where the wall is of its feature: that at the left of a line has the material at its right, that
+/// at the left of a gap the other way round.
+const char* wall_name(const ProfileJob& job, const MeanProfile& m) {
+  return m.material_right == (job.kind != FeatureKind::trench) ? "left" : "right";
+}
+
+std::string profiles_csv(const ProfileJob& job, const ProfileSummary& s) {
   std::string text = "wall,u_nm,measured,standard_error,fitted\n";
   for (std::size_t p = 0; p < s.fit.profiles.size(); ++p) {
     const MeanProfile& m = s.fit.profiles[p];
     for (std::size_t i = 0; i < m.u_nm.size(); ++i)
-      text += fmt::format("{},{:.4f},{:.6g},{:.6g},{:.6g}\n", p == 0 ? "left" : "right", m.u_nm[i],
+      text += fmt::format("{},{:.4f},{:.6g},{:.6g},{:.6g}\n", wall_name(job, m), m.u_nm[i],
                           m.measured[i], m.standard_error[i], m.fitted[i]);
   }
   return text;
@@ -148,16 +158,15 @@ io::PlotPanel image_panel(const ProfileSummary& s, const PlacedImage& image) {
   return panel;
 }
 
-io::PlotPanel profile_panel(const ProfileSummary& s) {
+io::PlotPanel profile_panel(const ProfileJob& job, const ProfileSummary& s) {
   io::PlotPanel panel;
   panel.title = "mean profile, measured and fitted";
   panel.x.label = "distance from the middle of the wall, material to the right (nm)";
   panel.y.label = "signal";
   for (std::size_t p = 0; p < s.fit.profiles.size(); ++p) {
     const MeanProfile& m = s.fit.profiles[p];
-    const std::string wall = s.fit.profiles.size() == 1 ? ""
-                             : p == 0                   ? " (left walls)"
-                                                        : " (right walls)";
+    const std::string wall =
+        s.fit.profiles.size() == 1 ? "" : fmt::format(" ({} walls)", wall_name(job, m));
     panel.series.push_back({"measured" + wall, m.u_nm, m.measured, {}, io::PlotStyle::points});
     panel.series.push_back({"fitted" + wall, m.u_nm, m.fitted, {}});
   }
@@ -222,20 +231,26 @@ std::vector<std::filesystem::path> write_profile(const ProfileJob& job, const Pr
   const double distance_nm = s.hole ? 2 * std::numbers::pi * s.hole->radius_nm /
                                           static_cast<double>(s.fit.edges.front().rows_nm.size())
                                     : image.pitch_y_nm;
-  io::write_text(path("profile.json"), report(job, s).dump(2) + "\n");
+  // Of an earlier run; what says whether a result is to be trusted comes last.
+  for (const char* file : {"profile.json", "spectrum.csv", "panel.png"})
+    std::filesystem::remove(job.folder / file);
   io::write_text(path("edges.csv"), edges_csv(s));
-  io::write_text(path("profiles.csv"), profiles_csv(s));
+  io::write_text(path("profiles.csv"), profiles_csv(job, s));
   const bool spectrum = !s.fit.edge_spectrum.density_nm3.empty();
   if (spectrum) io::write_text(path("spectrum.csv"), spectrum_csv(s, distance_nm));
-  if (!job.picture) return written;
+  const auto finish = [&] {
+    io::write_text(path("profile.json"), report(job, s).dump(2) + "\n");
+    return written;
+  };
+  if (!job.picture) return finish();
   io::Plot plot;
-  plot.panels = {image_panel(s, image), profile_panel(s), shape_panel(job, s)};
+  plot.panels = {image_panel(s, image), profile_panel(job, s), shape_panel(job, s)};
   if (spectrum) plot.panels.push_back(spectrum_panel(s, distance_nm));
   plot.columns = 2;
   plot.width_px = 1800;
   plot.metadata = step_record("profile", record_of(job), {job.sem.file});
   io::write_plot(path("panel.png"), plot);
-  return written;
+  return finish();
 }
 
 }  // namespace surf::workflow

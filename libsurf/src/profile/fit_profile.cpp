@@ -16,6 +16,13 @@ constexpr int most_rounds = 12, steps_per_round = 4, row_steps = 2;
 constexpr double settled_nm = 0.02;
 constexpr double beyond_box = 1.2;  // of the box's half sizes: further away no quadratic holds
 constexpr std::size_t fewest_rows_with_spectrum = 16;
+constexpr double least_weight = 0.1;  // of the usual row's: rows that tell less are not seen
+
+double median_of(std::vector<double> v) {
+  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+  std::nth_element(v.begin(), middle, v.end());
+  return *middle;
+}
 
 /// Numbers of the fit in one vector: gain, offset, the walls', a displacement of each edge, and the
 /// simulation's error.
@@ -82,13 +89,18 @@ class Fit {
             moved = std::max(moved, std::abs(numbers_[side][k] - numbers_before[side][k]));
       converged = round > 1 && moved < settled_nm;
     }
-    for (int step = 0; step < steps_per_round; ++step) improve();
+    for (int step = 0; step < steps_per_round; ++step) {
+      options_.watch.check();
+      improve();
+    }
     return result(converged);
   }
 
  private:
   bool one_side_only() const {
-    return std::ranges::all_of(data_.edges, [](const ImageEdge& e) { return e.material_right; });
+    return std::ranges::all_of(data_.edges, [&](const ImageEdge& e) {
+      return e.material_right == data_.edges.front().material_right;
+    });
   }
   static int side_of(const ImageEdge& e) { return e.material_right ? 0 : 1; }
   static double sign_of(const ImageEdge& e) { return e.material_right ? 1 : -1; }
@@ -117,6 +129,7 @@ class Fit {
     if (count == 0 && library_.box().half[profile_width] > 0) sum = 2 * mean.front(), count = 1;
     if (count == 0) return;
     for (auto& side : numbers_) side[profile_width] = clamped(profile_width, sum / count);
+    width_beyond_ = numbers_[0][profile_width] != sum / count;
   }
 
   double clamped(std::size_t k, double value) const {
@@ -295,11 +308,34 @@ class Fit {
       }
       for (std::size_t e = 0; e < raw_.size(); ++e)
         for (std::size_t r = 0; r < raw_[e].size(); ++r) {
-          if (!(weight[e][r] > 0)) continue;
+          // A row whose wall is not seen stays where its neighbours say.
+          if (!(weight[e][r] > least_weight * median_of(weight[e]))) {
+            errors_[e][r] = std::numeric_limits<double>::quiet_NaN();
+            continue;
+          }
           raw_[e][r] += std::clamp(pull[e][r] / weight[e][r], -5.0, 5.0);
           errors_[e][r] = 1 / std::sqrt(weight[e][r]);
         }
     }
+  }
+
+  /// Places of rows less what the hole's middle is off by, which is no roughness.
+  std::vector<std::vector<double>> about_the_middle() const {
+    std::vector<std::vector<double>> out = raw_;
+    if (!data_.closed) return out;
+    for (auto& rows : out) {
+      const auto n = static_cast<double>(rows.size());
+      double cosine = 0, sine = 0;
+      for (std::size_t r = 0; r < rows.size(); ++r) {
+        const double a = 2 * std::numbers::pi * static_cast<double>(r) / n;
+        cosine += 2 / n * rows[r] * std::cos(a), sine += 2 / n * rows[r] * std::sin(a);
+      }
+      for (std::size_t r = 0; r < rows.size(); ++r) {
+        const double a = 2 * std::numbers::pi * static_cast<double>(r) / n;
+        rows[r] -= cosine * std::cos(a) + sine * std::sin(a);
+      }
+    }
+    return out;
   }
 
   /// Rows follow the roughness as far as it stands out of the noise (Wiener); what they do not
@@ -308,15 +344,17 @@ class Fit {
     const auto n = static_cast<std::size_t>(data_.rows);
     double noise2 = 0, count = 0;
     for (const auto& rows : errors_)
-      for (const double e : rows) noise2 += e * e, ++count;
-    noise2 /= count;
+      for (const double e : rows)
+        if (std::isfinite(e)) noise2 += e * e, ++count;
+    if (count > 0) noise2 /= count;
     std::vector<double> keep(n, 0);  // of each frequency, 0 to n - 1
     keep[0] = 1;
     if (data_.closed && n > 2) keep[1] = keep[n - 1] = 1;  // the hole's middle may be off
     double left2 = 0;
     if (n >= fewest_rows_with_spectrum) {
-      const EdgeRoughness r = fit_roughness(surf::edge_spectrum(raw_, data_.row_distance_nm),
-                                            layout_.edges, data_.row_distance_nm);
+      const EdgeRoughness r =
+          fit_roughness(surf::edge_spectrum(about_the_middle(), data_.row_distance_nm),
+                        layout_.edges, data_.row_distance_nm);
       if (r.found) {
         EdgeRoughness quiet = r;
         quiet.noise_nm = 0;
@@ -372,6 +410,7 @@ class Fit {
   ProfileFit result(bool converged) {
     ProfileFit out;
     out.converged = converged;
+    out.at_border = width_beyond_;
     out.gain = gain_, out.offset = offset_, out.blur_nm = std::sqrt(blur2_);
     const Normal now = normal();
     const Eigen::MatrixXd covariance =
@@ -434,7 +473,7 @@ class Fit {
   void add_roughness(ProfileFit& out) const {
     const double distance = data_.row_distance_nm;
     if (static_cast<std::size_t>(data_.rows) < fewest_rows_with_spectrum) return;
-    out.edge_spectrum = surf::edge_spectrum(raw_, distance);
+    out.edge_spectrum = surf::edge_spectrum(about_the_middle(), distance);
     out.edge_roughness = fit_roughness(out.edge_spectrum, layout_.edges, distance);
     std::vector<std::vector<double>> widths;
     for_each_pair([&](std::size_t a, std::size_t b) {
@@ -464,6 +503,7 @@ class Fit {
         ++count[b], sum[b] += s.value, at[b] += u, fitted[b] += m, variance[b] += variance_of(m);
       }
       MeanProfile p;
+      p.material_right = side == 0;
       for (std::size_t b = 0; b < sum.size(); ++b) {
         if (count[b] == 0) continue;
         p.u_nm.push_back(at[b] / count[b]);
@@ -481,6 +521,7 @@ class Fit {
   Layout layout_;
   std::array<ProfileNumbers, 2> numbers_{};  // of left and right walls
   double gain_ = 1, offset_ = 0, blur2_ = 0, contrast_ = 1;
+  bool width_beyond_ = false;      // of the library's box
   std::array<double, 2> noise_{};  // variance at level 0, and per level
   double least_variance_ = 0;
   std::vector<double> bumps_;

@@ -30,7 +30,9 @@ std::vector<double> smoothed(const std::vector<double>& y) {
       const double w = std::exp(-0.5 * (k - i) * (k - i) / (smooth_px * smooth_px));
       sum += w * y[static_cast<std::size_t>(k)], weight += w;
     }
-    out[static_cast<std::size_t>(i)] = weight > 0 ? sum / weight : 0;
+    out[static_cast<std::size_t>(i)] = weight > 0 ? sum / weight
+                                       : i > 0    ? out[static_cast<std::size_t>(i) - 1]
+                                                  : 0;
   }
   return out;
 }
@@ -51,7 +53,8 @@ std::vector<double> mean_row(const PlacedImage& image) {
     int count = 0;
     for (int y = 0; y < v.height(); ++y)
       if (image.is_valid(x, y)) sum += v(x, y), ++count;
-    out[static_cast<std::size_t>(x)] = count > 0 ? sum / count : 0;
+    out[static_cast<std::size_t>(x)] =
+        count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
   }
   return out;
 }
@@ -83,6 +86,7 @@ std::vector<int> rims(const std::vector<double>& y) {
 
 struct Flank {
   int top, ground_end;  // columns: the rim's top, the end of its ground, on the side of the ground
+  int left, right;      // its own columns
 };
 
 /// Where the signal crosses the threshold between the rim's top and the ground; NaN if nowhere.
@@ -153,7 +157,8 @@ double pitch_of(const std::vector<Rim>& rims, const std::vector<double>& y, doub
     double before = std::nan("");
     for (const Rim& rim : rims) {
       if (rim.material_right != right) continue;
-      const double place = crossing(y, {rim.top, right ? rim.left : rim.right}, threshold);
+      const double place =
+          crossing(y, {rim.top, right ? rim.left : rim.right, rim.left, rim.right}, threshold);
       if (std::isfinite(place - before)) distances.push_back(place - before);
       before = place;
     }
@@ -177,7 +182,7 @@ ThresholdEdges find_edges(const PlacedImage& image, FeatureKind kind, double thr
     out.pitch_nm = image.pitch_x_nm * pitch_of(rims, mean, threshold);
   for (std::size_t f = 0; f < features.size(); ++f)
     for (const Rim& rim : features[f]) {
-      const Flank flank{rim.top, rim.material_right ? rim.left : rim.right};
+      const Flank flank{rim.top, rim.material_right ? rim.left : rim.right, rim.left, rim.right};
       const double column = crossing(mean, flank, threshold);
       if (!std::isfinite(column)) continue;
       flanks.push_back(flank);
@@ -187,10 +192,15 @@ ThresholdEdges find_edges(const PlacedImage& image, FeatureKind kind, double thr
     }
   if (out.edges.empty())
     throw InvalidInput("SEM image",
-                       fmt::format("no {} is seen: along x no bright rims with darker ground at "
-                                   "{} side stand out",
-                                   name(kind), kind == FeatureKind::edge ? "one" : "the outer"),
-                       "Check what the image shows; lines must run along y");
+                       fmt::format("no {} is seen: no bright rims with darker ground at {} side "
+                                   "stand out",
+                                   name(kind),
+                                   kind == FeatureKind::edge   ? "one"
+                                   : kind == FeatureKind::line ? "the outer"
+                                                               : "the inner"),
+                       kind == FeatureKind::hole
+                           ? "Check what the image shows"
+                           : "Check what the image shows; lines must run along y");
   out.places_nm.resize(out.edges.size());
   for (int y = 0; y < image.values.height(); ++y) {
     out.rows_nm.push_back(image.y_nm(y));
@@ -203,8 +213,8 @@ ThresholdEdges find_edges(const PlacedImage& image, FeatureKind kind, double thr
       // The rim's top of this row.
       const int reach = static_cast<int>(2 * rim_reach_px);
       Flank flank = flanks[e];
-      for (int x = std::max(0, flanks[e].top - reach);
-           x <= std::min(static_cast<int>(row.size()) - 1, flanks[e].top + reach); ++x)
+      for (int x = std::max(flank.left, flanks[e].top - reach);
+           x <= std::min(flank.right, flanks[e].top + reach); ++x)
         if (row[static_cast<std::size_t>(x)] > row[static_cast<std::size_t>(flank.top)])
           flank.top = x;
       const double column =
@@ -227,9 +237,11 @@ Circle find_hole(const PlacedImage& image) {
   for (int y = half; y < v.height() - half; ++y)
     for (int x = half; x < v.width() - half; ++x) {
       double sum = 0;
+      int count = 0, all = 0;
       for (int dy = -half; dy <= half; dy += std::max(1, half / 4))
-        for (int dx = -half; dx <= half; dx += std::max(1, half / 4)) sum += v(x + dx, y + dy);
-      if (sum < least) least = sum, dark_x = x, dark_y = y;
+        for (int dx = -half; dx <= half; dx += std::max(1, half / 4), ++all)
+          if (image.is_valid(x + dx, y + dy)) sum += v(x + dx, y + dy), ++count;
+      if (2 * count > all && sum / count < least) least = sum / count, dark_x = x, dark_y = y;
     }
   Circle circle{image.x_nm(dark_x), image.y_nm(dark_y), 0};
   // The brightest places on rays from there lie on the rim; a circle through them, repeated.
@@ -285,11 +297,13 @@ PlacedImage unrolled(const PlacedImage& image, const Circle& hole) {
   out.pitch_x_nm = step;
   out.pitch_y_nm = 2 * std::numbers::pi * hole.radius_nm / rows;
   out.values = Grid<double>(columns, rows);
+  out.valid = Mask(columns, rows, 1);
   for (int y = 0; y < rows; ++y)
     for (int x = 0; x < columns; ++x) {
       const double a = 2 * std::numbers::pi * y / rows, r = x * step;
       out.values(x, y) =
           sample_image(image, {hole.x_nm + r * std::cos(a), hole.y_nm + r * std::sin(a)});
+      if (!std::isfinite(out.values(x, y))) out.values(x, y) = 0, out.valid(x, y) = 0;
     }
   return out;
 }

@@ -23,14 +23,15 @@ ProfileData profile_data(const PlacedImage& image, const std::vector<ImageEdge>&
   return out;
 }
 
-ProfileData profile_data(const PlacedImage& image, const Circle& hole) {
+ProfileData profile_data(const PlacedImage& image, const Circle& hole, double to_nm) {
   ProfileData out;
   const double around_nm = 2 * std::numbers::pi * hole.radius_nm;
   out.rows = std::max(16, static_cast<int>(std::lround(around_nm / image.pitch_x_nm)));
   out.row_distance_nm = around_nm / out.rows;
   const Grid<double>& v = image.values;
-  const double room = std::min({hole.x_nm - image.x_nm(0), image.x_nm(v.width() - 1) - hole.x_nm,
-                                hole.y_nm - image.y_nm(0), image.y_nm(v.height() - 1) - hole.y_nm});
+  const double room =
+      std::min({to_nm, hole.x_nm - image.x_nm(0), image.x_nm(v.width() - 1) - hole.x_nm,
+                hole.y_nm - image.y_nm(0), image.y_nm(v.height() - 1) - hole.y_nm});
   out.edges = {{0, true, hole.radius_nm, 0, room}};
   out.closed = true;
   for (int y = 0; y < v.height(); ++y)

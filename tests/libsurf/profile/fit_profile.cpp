@@ -114,6 +114,39 @@ TEST(FitProfile, LeftAndRightWallsMayDiffer) {
   EXPECT_EQ(f.profiles.size(), 2u);
 }
 
+TEST(FitProfile, RowsThatDoNotShowTheWallAreLeftOut) {
+  Made made = lines(5, 1.2, 12);
+  const ProfileFit whole = fit(made.image, usual());
+  const std::vector<ImageEdge> edges = find_edges(made.image, FeatureKind::line).edges;
+  made.image.valid = Mask(90, 96, 1);
+  for (int y = 40; y < 48; ++y)
+    for (int x = 0; x < 90; ++x)  // in two rows a piece of level ground is left
+      made.image.valid(x, y) = y < 42 && x == 20;
+  const ProfileLibrary known = library();
+  const ProfileFit part = fit_profile(profile_data(made.image, edges), known, usual());
+  EXPECT_TRUE(std::isnan(part.edges[0].errors_nm[44]));
+  EXPECT_TRUE(std::isnan(part.edges[1].errors_nm[41]));
+  EXPECT_LT(part.edges[0].errors_nm[30], 3);
+  EXPECT_NEAR(part.left[profile_width].value, whole.left[profile_width].value, 0.5);
+  EXPECT_NEAR(part.edge_roughness.sigma_nm, whole.edge_roughness.sigma_nm, 0.3);
+}
+
+TEST(FitProfile, AWidthBeyondTheLibraryIsSaid) {
+  EXPECT_FALSE(fit(lines(4, 0, 8).image, usual()).at_border);
+  ProfileBox narrow = box;
+  narrow.middle[profile_width] = 60;
+  const auto shapes = profile_design(narrow);
+  std::vector<std::vector<double>> signals;
+  for (const ProfileNumbers& n : shapes) {
+    signals.emplace_back();
+    for (int k = 0; k <= 140; ++k) signals.back().push_back(signal(-35 + 0.5 * k, n));
+  }
+  const PlacedImage image = lines(4, 0, 8).image;
+  EXPECT_TRUE(fit_profile(profile_data(image, find_edges(image, FeatureKind::line).edges),
+                          {narrow, -35, 0.5, shapes, signals}, usual())
+                  .at_border);
+}
+
 TEST(FitProfile, AWrongModelIsToldByWhatItIsOffBy) {
   Made made = lines(4, 0, 8);
   const double right = fit(made.image, usual()).discrepancy_share;

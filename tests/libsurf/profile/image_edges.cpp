@@ -107,11 +107,16 @@ TEST(ImageEdges, FindsAHolesMiddleAndRadius) {
   EXPECT_NEAR(c.x_nm, 115, 1.5);
   EXPECT_NEAR(c.y_nm, 124, 1.5);
   EXPECT_NEAR(c.radius_nm, 60, 2);
+  PlacedImage marked = hole();  // a mark beside it, whose pixels are 0
+  marked.valid = Mask(80, 80, 1);
+  for (int y = 0; y < 16; ++y)
+    for (int x = 64; x < 80; ++x) marked.values(x, y) = -5, marked.valid(x, y) = 0;
+  EXPECT_NEAR(find_hole(marked).x_nm, 115, 1.5);
   const PlacedImage around = unrolled(hole(), {115, 124, 60});
   EXPECT_NEAR(around.pitch_y_nm * around.values.height(), 2 * M_PI * 60, 1e-6);
   for (int y = 0; y < around.values.height(); ++y)
     EXPECT_NEAR(around.values(20, y), 2 + 0.1, 0.25) << y;  // on the rim
-  const ProfileData data = profile_data(hole(), c);
+  const ProfileData data = profile_data(hole(), c, 1e9);
   EXPECT_TRUE(data.closed);
   EXPECT_EQ(data.edges.size(), 1u);
   EXPECT_GT(data.samples.size(), 4000u);

@@ -29,8 +29,9 @@ struct ProfileData {
 
 /// The pixels of an image whose lines run along y.
 ProfileData profile_data(const PlacedImage& image, const std::vector<ImageEdge>& edges);
-/// The pixels around a hole: rows are directions, x is the distance from its middle.
-ProfileData profile_data(const PlacedImage& image, const Circle& hole);
+/// The pixels around a hole, up to a distance from its middle: rows are directions, x is the
+/// distance.
+ProfileData profile_data(const PlacedImage& image, const Circle& hole, double to_nm);
 
 struct ProfileFitOptions {
   bool walls_alike = true;  ///< left and right walls have one shape
@@ -56,12 +57,14 @@ struct FittedEdge {
 
 /// A measured signal across an edge, and what the fit makes of it, at distances u from the edge.
 struct MeanProfile {
+  bool material_right = true;  ///< of walls with the ground at their left
   std::vector<double> u_nm, measured, standard_error, fitted;
 };
 
 struct ProfileFit {
   std::vector<FittedEdge> edges;
-  /// Of the walls with the ground at their left and at their right; the same if walls are alike.
+  /// Of the walls with the ground at their left (`left`) and at their right; the same if walls are
+  /// alike, or are seen from one side only.
   /// The order of ProfileNumbers; a width's standard error is that of the mean width.
   std::array<Measured, profile_numbers> left, right;
   std::vector<Measured> widths_nm;  ///< of each feature with two edges, or a hole's diameter
@@ -73,7 +76,7 @@ struct ProfileFit {
   /// What the simulation is off by, root mean square over the signal's contrast.
   double discrepancy_share = 0;
   bool converged = false;
-  bool at_border = false;  ///< a number without a prior lies at the border of the library's box
+  bool at_border = false;  ///< width or a number without a prior is at the border of the box
 };
 
 /// Fits shape, gain, offset and the place of each edge in each row. Places of rows are smoothed by
