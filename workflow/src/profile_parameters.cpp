@@ -13,7 +13,10 @@ void describe_beam(ParameterVisitor& visit, ProfileJob& job) {
   request.beam.energy_ev = job.energy_ev;
   request.beam.spot_nm = job.spot_nm;
   request.physics = job.physics;
-  describe_some(visit, request, {{"beam.energy"}, {"beam.spot"}, {"simulation.physics"}});
+  describe_some(visit, request,
+                {{.name = "beam.energy", .otherwise = "must be said"},
+                 {"beam.spot"},
+                 {"simulation.physics"}});
   if (!visit.reads()) return;
   job.energy_ev = request.beam.energy_ev;
   job.spot_nm = request.beam.spot_nm;
