@@ -169,18 +169,42 @@ class Fit {
     return std::max(noise_[0] + noise_[1] * level, least_variance_);
   }
 
-  /// Gain and offset by least squares.
+  /// All edges, away from their material.
+  void move_outward(double by_nm) {
+    for (std::size_t e = 0; e < places_.size(); ++e) {
+      for (double& x : places_[e]) x -= sign_of(data_.edges[e]) * by_nm;
+      for (double& x : raw_[e]) x -= sign_of(data_.edges[e]) * by_nm;
+    }
+    width_now();
+  }
+
+  /// Gain and offset by least squares, where edges lie best: thresholds are off by nanometres, and
+  /// chance in the library makes small valleys in between, in which steps would end.
   void begin() {
+    constexpr double farthest_nm = 6, step_nm = 0.25;
+    double best = 0, least = HUGE_VAL;
+    for (double at = -farthest_nm; at <= farthest_nm; at += step_nm) {
+      move_outward(at);
+      const double left = scale();
+      move_outward(-at);
+      if (left < least) least = left, best = at;
+    }
+    move_outward(best);
+    scale();
+  }
+
+  /// Sets gain and offset, and returns the mean squared residual.
+  double scale() {
     double n = 0, s = 0, y = 0, ss = 0, sy = 0, yy = 0;
     for (const ProfileSample& p : data_.samples) {
       const ImageEdge& e = data_.edges[static_cast<std::size_t>(p.edge)];
       const double v = library_.at(u_of(p), numbers_[side_of(e)]).value;
       ++n, s += v, y += p.value, ss += v * v, sy += v * p.value, yy += p.value * p.value;
     }
-    const double spread = ss - s * s / n;
-    gain_ = spread > 0 ? std::max(1e-12, (sy - s * y / n) / spread) : 1;
+    const double spread = ss - s * s / n, both = sy - s * y / n, own = yy - y * y / n;
+    gain_ = spread > 0 ? std::max(1e-12, both / spread) : 1;
     offset_ = (y - gain_ * s) / n;
-    noise_ = {std::max(1e-12, yy / n - y * y / (n * n)) * 0.25, 0};
+    noise_ = {std::max(1e-12, own / n) * 0.25, 0};
     least_variance_ = 1e-6 * noise_[0];
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (double u = library_.first_u_nm(); u <= library_.last_u_nm(); u += 1) {
@@ -188,6 +212,7 @@ class Fit {
       low = std::min(low, v), high = std::max(high, v);
     }
     contrast_ = high - low;
+    return (own - 2 * gain_ * both + gain_ * gain_ * spread) / n;
   }
 
   struct Normal {
@@ -200,23 +225,14 @@ class Fit {
   Normal normal() const {
     const int n = layout_.all();
     Normal out{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), 0};
-    std::vector<std::pair<int, double>> d;
+    Derivatives d;
     for (const ProfileSample& s : data_.samples) {
       const ImageEdge& e = data_.edges[static_cast<std::size_t>(s.edge)];
       const int side = side_of(e);
       const double u = u_of(s);
       const ProfileLibrary::Value v = library_.at(u, numbers_[side]);
       const double m = model(v, u), variance = variance_of(m), off = s.value - m;
-      d.clear();
-      d.emplace_back(0, signal(v) * gain_);  // of the gain's logarithm
-      d.emplace_back(1, 1);
-      for (std::size_t k = 0; k < layout_.free.size(); ++k)
-        d.emplace_back(layout_.wall(side) + static_cast<int>(k),
-                       gain_ * v.by_number[layout_.free[k]]);
-      d.emplace_back(layout_.edge(s.edge), -sign_of(e) * gain_ * v.by_u);
-      const Bump b = bump_at(u);
-      d.emplace_back(layout_.bump(b.first), b.weights[0]);
-      d.emplace_back(layout_.bump(b.first + 1), b.weights[1]);
+      derivatives(s, u, v, d);
       out.value += 0.5 * off * off / variance;
       for (const auto& [i, by_i] : d) {
         out.pull(i) += by_i * off / variance;
@@ -241,6 +257,56 @@ class Fit {
       prior(layout_.bump(k), bumps_[static_cast<std::size_t>(k)], bump_deviation(u));
     }
     return out;
+  }
+
+  /// The signal's slope over some places: that between two alone is half chance, which would look
+  /// like something that tells where the edge is.
+  double slope_around(double u, int side) const {
+    const double reach = std::max(2 * library_.step_nm(), 2.0);
+    return (library_.at(u + reach, numbers_[side]).value -
+            library_.at(u - reach, numbers_[side]).value) /
+           (2 * reach);
+  }
+
+  /// Derivatives of the model at a sample, by number of the fit.
+  using Derivatives = std::vector<std::pair<int, double>>;
+  void derivatives(const ProfileSample& s, double u, const ProfileLibrary::Value& v,
+                   Derivatives& d) const {
+    const ImageEdge& e = data_.edges[static_cast<std::size_t>(s.edge)];
+    d.clear();
+    d.emplace_back(0, signal(v) * gain_);  // of the gain's logarithm
+    d.emplace_back(1, 1);
+    for (std::size_t k = 0; k < layout_.free.size(); ++k)
+      d.emplace_back(layout_.wall(side_of(e)) + static_cast<int>(k),
+                     gain_ * v.by_number[layout_.free[k]]);
+    d.emplace_back(layout_.edge(s.edge), -sign_of(e) * gain_ * slope_around(u, side_of(e)));
+    const Bump b = bump_at(u);
+    d.emplace_back(layout_.bump(b.first), b.weights[0]);
+    d.emplace_back(layout_.bump(b.first + 1), b.weights[1]);
+  }
+
+  /// The covariance, and what the library's own errors move the fit by: all rows share them, and
+  /// chance in neighbouring places looks like a slope that tells where an edge is.
+  Eigen::MatrixXd with_library_errors(const Eigen::MatrixXd& covariance) const {
+    const std::vector<double>& variances = library_.variances();
+    Eigen::MatrixXd pull =
+        Eigen::MatrixXd::Zero(layout_.all(), static_cast<Eigen::Index>(variances.size()));
+    Derivatives d;
+    for (const ProfileSample& s : data_.samples) {
+      const double u = u_of(s);
+      const ProfileLibrary::Value v =
+          library_.at(u, numbers_[side_of(data_.edges[static_cast<std::size_t>(s.edge)])]);
+      const double variance = variance_of(model(v, u));
+      derivatives(s, u, v, d);
+      for (std::size_t i = 0; i < v.places.size(); ++i)
+        for (const auto& [number, by_number] : d)
+          pull(number, static_cast<Eigen::Index>(v.places[i])) +=
+              by_number * gain_ * v.weights[i] / variance;
+    }
+    for (std::size_t k = 0; k < variances.size(); ++k)
+      pull.col(static_cast<Eigen::Index>(k)) *= std::sqrt(variances[k]);
+    const Eigen::MatrixXd moved = covariance * pull;
+    return covariance + moved * moved.transpose();
   }
 
   double bump_deviation(double u) const {
@@ -413,8 +479,8 @@ class Fit {
     out.at_border = width_beyond_;
     out.gain = gain_, out.offset = offset_, out.blur_nm = std::sqrt(blur2_);
     const Normal now = normal();
-    const Eigen::MatrixXd covariance =
-        now.matrix.ldlt().solve(Eigen::MatrixXd::Identity(layout_.all(), layout_.all()));
+    const Eigen::MatrixXd covariance = with_library_errors(
+        now.matrix.ldlt().solve(Eigen::MatrixXd::Identity(layout_.all(), layout_.all())));
     const auto error = [&](int i) { return std::sqrt(std::max(covariance(i, i), 0.0)); };
     const ProfileBox& box = library_.box();
     for (int side = 0; side < 2; ++side) {

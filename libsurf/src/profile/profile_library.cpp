@@ -164,6 +164,7 @@ ProfileLibrary::Value ProfileLibrary::at(double u_nm, const ProfileNumbers& numb
         out.by_number[n] += cubic.value[i] * c[k] * t[k].by_number[n];
     }
     out.value += cubic.value[i] * value;
+    out.places[i] = u, out.weights[i] = cubic.value[i];
     if (inside) {
       out.by_u += cubic.slope[i] * value / step_;
       out.by_u2 += cubic.bend[i] * value / (step_ * step_);

@@ -36,6 +36,9 @@ class ProfileLibrary {
     double value = 0, by_u = 0, by_u2 = 0;
     ProfileNumbers by_number{};
     double variance = 0;  ///< of the value, by the simulations' noise and what no quadratic fits
+    /// Simulated places that the value is interpolated from, and their weights.
+    std::array<std::size_t, 4> places{};
+    std::array<double, 4> weights{};
   };
 
   /// `signals`: per shape the signal at u = first + k step; `middle`: if it is not empty, the level
@@ -48,8 +51,12 @@ class ProfileLibrary {
   /// Beyond the range of u the signal goes on as at its end.
   Value at(double u_nm, const ProfileNumbers& numbers) const;
 
+  /// Variances of the values at the simulated places, whose errors are independent.
+  const std::vector<double>& variances() const { return variance_; }
+
   const ProfileBox& box() const { return box_; }
   double first_u_nm() const { return first_; }
+  double step_nm() const { return step_; }
   double last_u_nm() const { return first_ + step_ * static_cast<double>(count_ - 1); }
 
  private:
