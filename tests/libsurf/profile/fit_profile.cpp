@@ -140,3 +140,63 @@ TEST(FitProfile, ChanceInTheLibraryIsNoInformation) {
     const ProfileFit f =
         fit_profile(profile_data(made.image, edges), {box, -35, 0.5, shapes, signals, middle}, o);
     const Measured width = f.left[profile_width];
+    z2 += std::pow((width.value - made.width_nm) / width.standard_error, 2) / trials;
+  }
+  EXPECT_LT(std::sqrt(z2), 1.6);
+}
+
+TEST(FitProfile, RowsThatDoNotShowTheWallAreLeftOut) {
+  Made made = lines(5, 1.2, 12);
+  const ProfileFit whole = fit(made.image, usual());
+  const std::vector<ImageEdge> edges = find_edges(made.image, FeatureKind::line).edges;
+  made.image.valid = Mask(90, 96, 1);
+  for (int y = 40; y < 48; ++y)
+    for (int x = 0; x < 90; ++x)  // in two rows a piece of level ground is left
+      made.image.valid(x, y) = y < 42 && x == 20;
+  const ProfileLibrary known = library();
+  const ProfileFit part = fit_profile(profile_data(made.image, edges), known, usual());
+  EXPECT_TRUE(std::isnan(part.edges[0].errors_nm[44]));
+  EXPECT_TRUE(std::isnan(part.edges[1].errors_nm[41]));
+  EXPECT_LT(part.edges[0].errors_nm[30], 3);
+  EXPECT_NEAR(part.left[profile_width].value, whole.left[profile_width].value, 0.5);
+  EXPECT_NEAR(part.edge_roughness.sigma_nm, whole.edge_roughness.sigma_nm, 0.3);
+}
+
+TEST(FitProfile, AWidthBeyondTheLibraryIsSaid) {
+  EXPECT_FALSE(fit(lines(4, 0, 8).image, usual()).at_border);
+  ProfileBox narrow = box;
+  narrow.middle[profile_width] = 60;
+  const auto shapes = profile_design(narrow);
+  std::vector<std::vector<double>> signals;
+  for (const ProfileNumbers& n : shapes) {
+    signals.emplace_back();
+    for (int k = 0; k <= 140; ++k) signals.back().push_back(signal(-35 + 0.5 * k, n));
+  }
+  const PlacedImage image = lines(4, 0, 8).image;
+  EXPECT_TRUE(fit_profile(profile_data(image, find_edges(image, FeatureKind::line).edges),
+                          {narrow, -35, 0.5, shapes, signals}, usual())
+                  .at_border);
+}
+
+TEST(FitProfile, AWrongModelIsToldByWhatItIsOffBy) {
+  Made made = lines(4, 0, 8);
+  const double right = fit(made.image, usual()).discrepancy_share;
+  ProfileFitOptions o = usual();
+  o.model_error = 0.05;
+  for (int y = 0; y < made.image.values.height(); ++y)
+    for (int x = 0; x < made.image.values.width(); ++x) {
+      const double at = 4 * x, near = std::min(std::abs(at - 65), std::abs(at - 117));
+      made.image.values(x, y) += 40 * std::exp(-0.5 * near * near / 9);
+    }
+  EXPECT_GT(fit(made.image, o).discrepancy_share, 5 * right + 0.01);
+}
+
+TEST(FitProfile, RefusesAnEdgeWithoutPixels) {
+  ProfileData data = profile_data(lines(1, 0, 8).image, {{0, true, 51, 0, 91}});
+  data.samples.resize(10);
+  const ProfileLibrary known = library();
+  EXPECT_THROW(fit_profile(data, known, usual()), InvalidInput);
+}
+
+}  // namespace
+}  // namespace surf
