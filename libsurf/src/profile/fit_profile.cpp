@@ -221,8 +221,9 @@ class Fit {
     double value = 0;
   };
 
-  /// The negative logarithm of the posterior, and its Gauss-Newton equations.
-  Normal normal() const {
+  /// The negative logarithm of the posterior, and its Gauss-Newton equations; those that errors are
+  /// taken from have slopes over some places.
+  Normal normal(bool of_errors = false) const {
     const int n = layout_.all();
     Normal out{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), 0};
     Derivatives d;
@@ -232,7 +233,7 @@ class Fit {
       const double u = u_of(s);
       const ProfileLibrary::Value v = library_.at(u, numbers_[side]);
       const double m = model(v, u), variance = variance_of(m), off = s.value - m;
-      derivatives(s, u, v, d);
+      derivatives(s, u, v, of_errors ? slope_around(u, side) : v.by_u, d);
       out.value += 0.5 * off * off / variance;
       for (const auto& [i, by_i] : d) {
         out.pull(i) += by_i * off / variance;
@@ -270,7 +271,7 @@ class Fit {
 
   /// Derivatives of the model at a sample, by number of the fit.
   using Derivatives = std::vector<std::pair<int, double>>;
-  void derivatives(const ProfileSample& s, double u, const ProfileLibrary::Value& v,
+  void derivatives(const ProfileSample& s, double u, const ProfileLibrary::Value& v, double slope,
                    Derivatives& d) const {
     const ImageEdge& e = data_.edges[static_cast<std::size_t>(s.edge)];
     d.clear();
@@ -279,7 +280,7 @@ class Fit {
     for (std::size_t k = 0; k < layout_.free.size(); ++k)
       d.emplace_back(layout_.wall(side_of(e)) + static_cast<int>(k),
                      gain_ * v.by_number[layout_.free[k]]);
-    d.emplace_back(layout_.edge(s.edge), -sign_of(e) * gain_ * slope_around(u, side_of(e)));
+    d.emplace_back(layout_.edge(s.edge), -sign_of(e) * gain_ * slope);
     const Bump b = bump_at(u);
     d.emplace_back(layout_.bump(b.first), b.weights[0]);
     d.emplace_back(layout_.bump(b.first + 1), b.weights[1]);
@@ -297,7 +298,8 @@ class Fit {
       const ProfileLibrary::Value v =
           library_.at(u, numbers_[side_of(data_.edges[static_cast<std::size_t>(s.edge)])]);
       const double variance = variance_of(model(v, u));
-      derivatives(s, u, v, d);
+      derivatives(s, u, v, slope_around(u, side_of(data_.edges[static_cast<std::size_t>(s.edge)])),
+                  d);
       for (std::size_t i = 0; i < v.places.size(); ++i)
         for (const auto& [number, by_number] : d)
           pull(number, static_cast<Eigen::Index>(v.places[i])) +=
@@ -478,7 +480,7 @@ class Fit {
     out.converged = converged;
     out.at_border = width_beyond_;
     out.gain = gain_, out.offset = offset_, out.blur_nm = std::sqrt(blur2_);
-    const Normal now = normal();
+    const Normal now = normal(true);
     const Eigen::MatrixXd covariance = with_library_errors(
         now.matrix.ldlt().solve(Eigen::MatrixXd::Identity(layout_.all(), layout_.all())));
     const auto error = [&](int i) { return std::sqrt(std::max(covariance(i, i), 0.0)); };
