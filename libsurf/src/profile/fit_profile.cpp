@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "follow_rows.h"
 #include "surf/core/error.h"
 
 namespace surf {
@@ -14,8 +14,7 @@ namespace {
 
 constexpr int most_rounds = 12, steps_per_round = 4, row_steps = 2;
 constexpr double settled_nm = 0.02;
-constexpr double beyond_box = 1.2;  // of the box's half sizes: further away no quadratic holds
-constexpr std::size_t fewest_rows_with_spectrum = 16;
+constexpr double beyond_box = 1.2;    // of the box's half sizes: further away no quadratic holds
 constexpr double least_weight = 0.1;  // of the usual row's: rows that tell less are not seen
 
 double median_of(std::vector<double> v) {
@@ -77,7 +76,9 @@ class Fit {
         if (!improve()) break;
       }
       place_rows();
-      follow_rows();
+      FollowedRows followed = follow_rows(raw_, errors_, data_.closed, data_.row_distance_nm);
+      places_ = std::move(followed.places_nm);
+      blur2_ = followed.blur_nm2;
       estimate_noise();
       double moved = 0;
       const std::vector<double> now = means();
@@ -387,78 +388,6 @@ class Fit {
     }
   }
 
-  /// Places of rows less what the hole's middle is off by, which is no roughness.
-  std::vector<std::vector<double>> about_the_middle() const {
-    std::vector<std::vector<double>> out = raw_;
-    if (!data_.closed) return out;
-    for (auto& rows : out) {
-      const auto n = static_cast<double>(rows.size());
-      double cosine = 0, sine = 0;
-      for (std::size_t r = 0; r < rows.size(); ++r) {
-        const double a = 2 * std::numbers::pi * static_cast<double>(r) / n;
-        cosine += 2 / n * rows[r] * std::cos(a), sine += 2 / n * rows[r] * std::sin(a);
-      }
-      for (std::size_t r = 0; r < rows.size(); ++r) {
-        const double a = 2 * std::numbers::pi * static_cast<double>(r) / n;
-        rows[r] -= cosine * std::cos(a) + sine * std::sin(a);
-      }
-    }
-    return out;
-  }
-
-  /// Rows follow the roughness as far as it stands out of the noise (Wiener); what they do not
-  /// follow blurs.
-  void follow_rows() {
-    const auto n = static_cast<std::size_t>(data_.rows);
-    double noise2 = 0, count = 0;
-    for (const auto& rows : errors_)
-      for (const double e : rows)
-        if (std::isfinite(e)) noise2 += e * e, ++count;
-    if (count > 0) noise2 /= count;
-    std::vector<double> keep(n, 0);  // of each frequency, 0 to n - 1
-    keep[0] = 1;
-    if (data_.closed && n > 2) keep[1] = keep[n - 1] = 1;  // the hole's middle may be off
-    double left2 = 0;
-    if (n >= fewest_rows_with_spectrum) {
-      const EdgeRoughness r =
-          fit_roughness(surf::edge_spectrum(about_the_middle(), data_.row_distance_nm),
-                        layout_.edges, data_.row_distance_nm);
-      if (r.found) {
-        EdgeRoughness quiet = r;
-        quiet.noise_nm = 0;
-        for (std::size_t k = 1; k < n; ++k) {
-          const double f = static_cast<double>(std::min(k, n - k)) /
-                           (static_cast<double>(n) * data_.row_distance_nm);
-          const double signal = roughness_density(quiet, f, data_.row_distance_nm),
-                       noise = noise2 * data_.row_distance_nm;
-          if (keep[k] == 1) continue;
-          keep[k] = signal / (signal + noise);
-          left2 += keep[k] * noise / (static_cast<double>(n) * data_.row_distance_nm);
-        }
-      }
-    }
-    blur2_ = left2;
-    std::vector<double> cosine(n), sine(n);
-    for (std::size_t k = 0; k < n; ++k) {
-      const double a = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n);
-      cosine[k] = std::cos(a), sine[k] = std::sin(a);
-    }
-    for (std::size_t e = 0; e < raw_.size(); ++e) {
-      std::vector<double> smooth(n, 0);
-      for (std::size_t k = 0; k <= n / 2; ++k) {
-        if (!(keep[k] > 1e-6)) continue;
-        double re = 0, im = 0;
-        for (std::size_t i = 0; i < n; ++i)
-          re += raw_[e][i] * cosine[i * k % n], im -= raw_[e][i] * sine[i * k % n];
-        const double twice = k == 0 || 2 * k == n ? 1 : 2,
-                     factor = twice * keep[k] / static_cast<double>(n);
-        for (std::size_t i = 0; i < n; ++i)
-          smooth[i] += factor * (re * cosine[i * k % n] - im * sine[i * k % n]);
-      }
-      places_[e] = std::move(smooth);
-    }
-  }
-
   /// A line of squared residuals against the level.
   void estimate_noise() {
     double n = 0, m1 = 0, m2 = 0, r1 = 0, mr = 0;
@@ -541,7 +470,7 @@ class Fit {
   void add_roughness(ProfileFit& out) const {
     const double distance = data_.row_distance_nm;
     if (static_cast<std::size_t>(data_.rows) < fewest_rows_with_spectrum) return;
-    out.edge_spectrum = surf::edge_spectrum(about_the_middle(), distance);
+    out.edge_spectrum = surf::edge_spectrum(without_middle(raw_, data_.closed), distance);
     out.edge_roughness = fit_roughness(out.edge_spectrum, layout_.edges, distance);
     std::vector<std::vector<double>> widths;
     for_each_pair([&](std::size_t a, std::size_t b) {

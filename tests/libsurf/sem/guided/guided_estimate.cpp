@@ -143,17 +143,24 @@ TEST(GuidedEstimate, KeepsOfAFaintPixelWhatItsCountsCannotBe) {
   EXPECT_GT(sum / 4, 0.8);
 }
 
+/// Squared errors of images of 64 primaries per pixel, pooled over four seeds.
+struct Pooled {
+  double errors = 0, stated = 0, without = 0;
+
+  explicit Pooled(const Grid<double>& yield) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      const CountImage counts = counts_of(yield, 64, seed);
+      const GuidedImage image = estimate_guided(counts, {});
+      errors += std::pow(rms(image.mean, yield), 2);
+      stated += std::pow(root_mean_square(image.error), 2);
+      without += std::pow(rms(plain(counts), yield), 2);
+    }
+  }
+};
+
 TEST(GuidedEstimate, SingleCountsInTheDarkAreChance) {
   // 0.06 counts per pixel: each lies far beyond what a normal distribution would allow.
-  const Grid<double> yield(96, 96, 1e-3);
-  double errors = 0, stated = 0, without = 0;
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    const CountImage counts = counts_of(yield, 64, seed);
-    const GuidedImage image = estimate_guided(counts, {});
-    errors += std::pow(rms(image.mean, yield), 2);
-    stated += std::pow(root_mean_square(image.error), 2);
-    without += std::pow(rms(plain(counts), yield), 2);
-  }
+  const auto [errors, stated, without] = Pooled(Grid<double>(96, 96, 1e-3));
   EXPECT_LT(errors, 0.05 * without);
   EXPECT_GT(std::sqrt(errors / stated), 0.5);
   EXPECT_LT(std::sqrt(errors / stated), 1.5);
@@ -165,17 +172,9 @@ TEST(GuidedEstimate, FewBrightPlacesAmongDarkOnesAreKeptAndDoubted) {
   // alone makes the stated error what it is.
   for (const auto& [bright, most] :
        {std::pair{0.0005, 2.5}, {0.005, 1.3}, {0.05, 1.3}, {0.5, 1.3}}) {
-    const Grid<double> yield = sampled(96, 96, [&](int x, int y) {
+    const auto [errors, stated, without] = Pooled(sampled(96, 96, [bright = bright](int x, int y) {
       return bright * (x % 24 / 5 == 2 && y % 24 / 5 == 2 ? 1 : 1e-3);
-    });
-    double errors = 0, stated = 0, without = 0;
-    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-      const CountImage counts = counts_of(yield, 64, seed);
-      const GuidedImage image = estimate_guided(counts, {});
-      errors += std::pow(rms(image.mean, yield), 2);
-      stated += std::pow(root_mean_square(image.error), 2);
-      without += std::pow(rms(plain(counts), yield), 2);
-    }
+    }));
     EXPECT_LT(std::sqrt(errors / without), 1.05) << bright;
     EXPECT_GT(std::sqrt(errors / stated), 0.8) << bright;
     EXPECT_LT(std::sqrt(errors / stated), most) << bright;
