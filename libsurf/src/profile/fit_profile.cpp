@@ -254,10 +254,8 @@ class Fit {
           prior(layout_.wall(side) + static_cast<int>(k),
                 numbers_[side][number] - options_.prior_mean[number], deviation);
       }
-    for (int k = 0; k < layout_.bumps; ++k) {
-      const double u = library_.first_u_nm() + k * options_.model_error_nm;
-      prior(layout_.bump(k), bumps_[static_cast<std::size_t>(k)], bump_deviation(u));
-    }
+    for (int k = 0; k < layout_.bumps; ++k)
+      prior(layout_.bump(k), bumps_[static_cast<std::size_t>(k)], bump_deviation());
     return out;
   }
 
@@ -312,10 +310,9 @@ class Fit {
     return covariance + moved * moved.transpose();
   }
 
-  double bump_deviation(double u) const {
-    const double simulated = library_.at(u, numbers_[0]).variance,
-                 share = options_.model_error * contrast_;
-    return gain_ * std::sqrt(share * share + simulated + 1e-12 * contrast_ * contrast_);
+  double bump_deviation() const {
+    constexpr double least = 1e-6;  // a prior of no width has no inverse
+    return gain_ * std::max(options_.model_error, least) * contrast_;
   }
 
   void move(const Eigen::VectorXd& step) {

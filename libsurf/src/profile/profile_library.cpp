@@ -169,7 +169,6 @@ ProfileLibrary::Value ProfileLibrary::at(double u_nm, const ProfileNumbers& numb
       out.by_u += cubic.slope[i] * value / step_;
       out.by_u2 += cubic.bend[i] * value / (step_ * step_);
     }
-    out.variance += std::max(cubic.value[i], 0.0) * variance_[u];
   }
   return out;
 }

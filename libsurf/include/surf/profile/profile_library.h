@@ -35,7 +35,6 @@ class ProfileLibrary {
   struct Value {
     double value = 0, by_u = 0, by_u2 = 0;
     ProfileNumbers by_number{};
-    double variance = 0;  ///< of the value, by the simulations' noise and what no quadratic fits
     /// Simulated places that the value is interpolated from, and their weights.
     std::array<std::size_t, 4> places{};
     std::array<double, 4> weights{};
@@ -51,7 +50,8 @@ class ProfileLibrary {
   /// Beyond the range of u the signal goes on as at its end.
   Value at(double u_nm, const ProfileNumbers& numbers) const;
 
-  /// Variances of the values at the simulated places, whose errors are independent.
+  /// Variances of the values at the simulated places, by the simulations' noise and what no
+  /// quadratic function fits; their errors are independent.
   const std::vector<double>& variances() const { return variance_; }
 
   const ProfileBox& box() const { return box_; }
