@@ -104,6 +104,8 @@ DescentReport descend(const Objective& objective, Unknowns& at, double sigma_px,
 }
 
 void fit_few(const Objective& o, Unknowns& at, const Watch& watch) {
+  for (std::size_t v = 0; v < o.views.size(); ++v)
+    o.views[v].fit(at.z_nm, at.views[v], o.fit_mixture, watch);
   const int of_map = o.afm && o.fit_map ? map_numbers : 0;
   const int of_mixture = o.fits_mixture() ? mixture_numbers : 0, n = of_map + of_mixture;
   if (n == 0) return;

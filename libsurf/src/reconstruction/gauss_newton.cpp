@@ -35,7 +35,7 @@ struct Quadratic {
   const Objective& objective;
   const Unknowns& at;
   const Objective::State& state;
-  const SemTerm::Near& near;
+  const Objective::Near& near;
   Step gradient;
 
   Step product(const Step& v) const { return objective.product(at, state, v, &near); }
@@ -97,7 +97,7 @@ DescentReport gauss_newton(const Objective& o, Unknowns& at, const DescentOption
   Objective::State state = o.evaluate(at);
   ++report.evaluations;
   Preconditioner m(Preconditioner::usual_tile_px, options.threads, options.precision);
-  SemTerm::Near near;
+  Objective::Near near;
   double radius = std::numeric_limits<double>::infinity();
   report.ended = "iterations";
   bool stale = true;
@@ -111,7 +111,7 @@ DescentReport gauss_newton(const Objective& o, Unknowns& at, const DescentOption
       m.factor(o, at, state);
       report.factors += m.tiles();
       report.double_factors += m.double_tiles();
-      if (o.sem) near = o.sem->near(*state.sem, at.mixture);
+      near = o.near(at, state);
     }
     const Quadratic quadratic{o, at, state, near, o.gradient(at, state)};
     report.gradient_norm = largest(quadratic.gradient.z_nm);

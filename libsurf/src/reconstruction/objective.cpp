@@ -34,6 +34,12 @@ double dot(const Step& a, const Step& b) {
   for (std::size_t i = 0; i < a.map.size(); ++i) sum += a.map[i] * b.map[i];
   for (std::size_t i = 0; i < a.mixture.size(); ++i) sum += a.mixture[i] * b.mixture[i];
   for (std::size_t i = 0; i < a.tip.size(); ++i) sum += a.tip[i] * b.tip[i];
+  for (std::size_t v = 0; v < a.views.size(); ++v) {
+    for (std::size_t i = 0; i < a.views[v].pose.size(); ++i)
+      sum += a.views[v].pose[i] * b.views[v].pose[i];
+    for (std::size_t i = 0; i < a.views[v].mixture.size(); ++i)
+      sum += a.views[v].mixture[i] * b.views[v].mixture[i];
+  }
   return sum;
 }
 
@@ -43,6 +49,12 @@ void add(Step& to, double factor, const Step& step) {
   for (std::size_t i = 0; i < to.map.size(); ++i) to.map[i] += factor * step.map[i];
   for (std::size_t i = 0; i < to.mixture.size(); ++i) to.mixture[i] += factor * step.mixture[i];
   for (std::size_t i = 0; i < to.tip.size(); ++i) to.tip[i] += factor * step.tip[i];
+  for (std::size_t v = 0; v < to.views.size(); ++v) {
+    for (std::size_t i = 0; i < to.views[v].pose.size(); ++i)
+      to.views[v].pose[i] += factor * step.views[v].pose[i];
+    for (std::size_t i = 0; i < to.views[v].mixture.size(); ++i)
+      to.views[v].mixture[i] += factor * step.views[v].mixture[i];
+  }
 }
 
 Objective::State Objective::evaluate(const Unknowns& at) const {
@@ -54,6 +66,10 @@ Objective::State Objective::evaluate(const Unknowns& at) const {
   if (sem) {
     s.sem = sem->evaluate(at.z_nm, at.mixture);
     s.sem_value = s.sem->value;
+  }
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    s.views.push_back(views[v].evaluate(at.z_nm, at.views[v]));
+    s.sem_value += s.views.back().value;
   }
   s.prior_value = prior.evaluate(at.z_nm, nullptr, &s.prior_weights);
   if (anchor_per_nm2 > 0)
@@ -72,7 +88,18 @@ Objective::State Objective::evaluate(const Unknowns& at) const {
   return s;
 }
 
-Step Objective::zero() const { return {Grid<double>(frame.width, frame.height), {}, {}}; }
+Step Objective::zero() const {
+  return {Grid<double>(frame.width, frame.height), {}, {}, {},
+          std::vector<ViewChange>(views.size())};
+}
+
+Objective::Near Objective::near(const Unknowns& at, const State& s) const {
+  Near out;
+  if (sem) out.sem = sem->near(*s.sem, at.mixture);
+  for (std::size_t v = 0; v < views.size(); ++v)
+    out.views.push_back(views[v].near(s.views[v], at.views[v]));
+  return out;
+}
 
 Step Objective::gradient(const Unknowns& at, const State& s) const {
   Step g = zero();
@@ -82,6 +109,13 @@ Step Objective::gradient(const Unknowns& at, const State& s) const {
   if (sem)
     sem->add_gradient(*s.sem, at.mixture, s.sem->pull, nullptr, g.z_nm,
                       fits_mixture() ? &g.mixture : nullptr);
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    views[v].add_gradient(s.views[v], at.views[v], s.views[v].sem.pull, nullptr, g.z_nm,
+                          &g.views[v]);
+    const PoseChange by_prior = views[v].prior_pull(at.views[v]);
+    for (int k = 0; k < pose_numbers; ++k) g.views[v].pose[k] += by_prior[k];
+    hold(g.views[v]);
+  }
   if (fit_drift) {
     g.map[6] += drift_precision * at.drift_px.x;
     g.map[7] += drift_precision * at.drift_px.y;
@@ -100,7 +134,7 @@ Step Objective::gradient(const Unknowns& at, const State& s) const {
 }
 
 Step Objective::product(const Unknowns& at, const State& s, const Step& v,
-                        const SemTerm::Near* near) const {
+                        const Near* near) const {
   Step out = zero();
   if (afm)
     afm->add_gradient(*s.afm, at.z_nm,
@@ -108,9 +142,19 @@ Step Objective::product(const Unknowns& at, const State& s, const Step& v,
                       fit_map ? &out.map : nullptr, fit_tip ? &out.tip : nullptr);
   if (sem) {
     const Grid<double> change =
-        sem->precision(*s.sem, sem->change(*s.sem, at.mixture, v.z_nm, v.mixture, near));
-    sem->add_gradient(*s.sem, at.mixture, change, near, out.z_nm,
+        sem->precision(*s.sem, sem->change(*s.sem, at.mixture, v.z_nm, v.mixture, near ? &near->sem : nullptr));
+    sem->add_gradient(*s.sem, at.mixture, change, near ? &near->sem : nullptr, out.z_nm,
                       fits_mixture() ? &out.mixture : nullptr);
+  }
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const ViewTerm& view = views[i];
+    const SemTerm::Near* by = near ? &near->views[i] : nullptr;
+    const Grid<double> change = view.sem().precision(
+        s.views[i].sem, view.change(s.views[i], at.views[i], v.z_nm, v.views[i], by));
+    view.add_gradient(s.views[i], at.views[i], change, by, out.z_nm, &out.views[i]);
+    for (int k = 0; k < pose_numbers; ++k)
+      out.views[i].pose[k] += view.prior_precision()[k] * v.views[i].pose[k];
+    hold(out.views[i]);
   }
   for (int k = affine_numbers; k < map_numbers && fit_drift; ++k)
     out.map[k] += drift_precision * v.map[k];
@@ -132,6 +176,11 @@ void Objective::hold(MixtureChange& change) const {
     if (!fits(k)) change[static_cast<std::size_t>(k)] = 0;
 }
 
+void Objective::hold(ViewChange& change) const {
+  for (int k = 0; k < mixture_numbers; ++k)
+    if (k > 1 || !fit_mixture) change.mixture[static_cast<std::size_t>(k)] = 0;
+}
+
 void Objective::hold(MapChange& change) const {
   for (int k = affine_numbers; k < map_numbers; ++k)
     if (!fit_drift) change[static_cast<std::size_t>(k)] = 0;
@@ -151,6 +200,8 @@ Unknowns Objective::moved(const Unknowns& at, const Step& step) const {
         std::clamp(at.mixture.blur_px2 + step.mixture[2], least_blur_px2, largest_blur_px2);
   if (fit_film)
     next.mixture.film_nm = std::clamp(at.mixture.film_nm + step.mixture[3], 0.0, largest_film_nm);
+  for (std::size_t v = 0; v < views.size(); ++v)
+    next.views[v] = views[v].moved(at.views[v], step.views[v], fit_mixture);
   if (fit_tip)  // limited, because a long step must not give NaN
     for (int k = 0; k < tip_numbers; ++k)
       next.tip[k] = std::clamp(at.tip[k] + step.tip[k], -largest_tip_change, largest_tip_change);

@@ -8,6 +8,7 @@
 #include "afm_term.h"
 #include "curvature_prior.h"
 #include "sem_term.h"
+#include "view_term.h"
 
 namespace surf::reconstruction {
 
@@ -21,6 +22,7 @@ struct Unknowns {
   Mixture mixture;    ///< without gains if there is no SEM image
   TipChange tip{};    ///< change from the given tip
   Point2 drift_px{};  ///< of the scan, see MapChange
+  std::vector<ViewUnknowns> views = {};
 };
 
 /// A change of the unknowns, or a derivative by them.
@@ -29,6 +31,7 @@ struct Step {
   MapChange map{};          ///< 0 if the map is not fitted
   MixtureChange mixture{};  ///< 0 if not fitted
   TipChange tip{};          ///< 0 if not fitted
+  std::vector<ViewChange> views = {};
 };
 double dot(const Step& a, const Step& b);
 void add(Step& to, double factor, const Step& step);
@@ -39,6 +42,7 @@ class Objective {
  public:
   std::optional<AfmTerm> afm = {};
   std::optional<SemTerm> sem = {};
+  std::vector<ViewTerm> views = {};
   CurvaturePrior prior;
   SurfaceFrame frame;
   bool fit_map = false;
@@ -63,18 +67,26 @@ class Objective {
   struct State {
     std::optional<AfmTerm::State> afm;
     std::optional<SemTerm::State> sem;
+    std::vector<ViewTerm::State> views;
     Grid<double> prior_weights;
+    /// `sem_value` is that of all SEM images.
     double afm_value = 0, sem_value = 0, prior_value = 0;
     double value() const { return afm_value + sem_value + prior_value; }
   };
 
   State evaluate(const Unknowns& at) const;
   Step gradient(const Unknowns& at, const State& state) const;
+  /// Replaces the J of the SEM images at a third of the cost: the first one's, and each view's.
+  struct Near {
+    SemTerm::Near sem;
+    std::vector<SemTerm::Near> views;
+  };
+  Near near(const Unknowns& at, const State& state) const;
   /// The product of the Gauss-Newton second derivative and v: J^T (precision or information) J,
   /// plus the second derivative of the prior with fixed weights, which is an upper bound. Positive
-  /// semidefinite. `near`, if given, replaces the SEM's J at a third of the cost.
+  /// semidefinite.
   Step product(const Unknowns& at, const State& state, const Step& v,
-               const SemTerm::Near* near = nullptr) const;
+               const Near* near = nullptr) const;
   Unknowns moved(const Unknowns& at, const Step& step) const;
   /// Whether a number of a change of the mixture is fitted.
   bool fits(int mixture_number) const {
@@ -88,6 +100,7 @@ class Objective {
   /// Zero where a number is not fitted.
   void hold(MixtureChange& change) const;
   void hold(MapChange& change) const;
+  void hold(ViewChange& change) const;
   Step zero() const;
 };
 

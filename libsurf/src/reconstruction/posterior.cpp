@@ -16,12 +16,13 @@ constexpr int cheap_draws[rounds] = {12, 12, 48};
 // it can, and a weight of its own curvature alone would take for granted where; images tell it to
 // within some pixels.
 constexpr double bend_px = 2;
+constexpr std::uint64_t view_seeds = std::uint64_t{1} << 32;  // apart from those of draws
 constexpr double around_px = 3;  // range over which the ratio of variances is averaged
 
 /// A draw of the gradient's change by the noise of both images: normal, with the precision of the
-/// data. `near`: see SemTerm::Near; null: the SEM's exact J.
+/// data. `near`: see Objective::Near; null: the exact J of SEM images.
 Step data_pull(const Objective& o, const Unknowns& at, const Objective::State& s,
-               const SemTerm::Near* near, std::uint64_t seed) {
+               const Objective::Near* near, std::uint64_t seed) {
   Step r = o.zero();
   if (o.afm) {
     const Grid<double> e =
@@ -31,9 +32,17 @@ Step data_pull(const Objective& o, const Unknowns& at, const Objective::State& s
     o.hold(r.map);
   }
   if (o.sem) {
-    o.sem->add_gradient(*s.sem, at.mixture, o.sem->draw_precision(*s.sem, seed), near, r.z_nm,
+    o.sem->add_gradient(*s.sem, at.mixture, o.sem->draw_precision(*s.sem, seed),
+                        near ? &near->sem : nullptr, r.z_nm,
                         o.fits_mixture() ? &r.mixture : nullptr);
     o.hold(r.mixture);
+  }
+  for (std::size_t v = 0; v < o.views.size(); ++v) {
+    const ViewTerm& view = o.views[v];
+    view.add_gradient(s.views[v], at.views[v],
+                      view.sem().draw_precision(s.views[v].sem, seed + view_seeds * (v + 1)),
+                      near ? &near->views[v] : nullptr, r.z_nm, &r.views[v]);
+    o.hold(r.views[v]);
   }
   return r;
 }
@@ -55,6 +64,9 @@ void add_prior_pull(const Objective& o, const Objective::State& s, std::uint64_t
     if (of_mixture[k] > 0) r.mixture[k] += std::sqrt(of_mixture[k]) * normal();
   if (o.fit_tip)
     for (double& v : r.tip) v += std::sqrt(o.tip_precision) * normal();
+  for (std::size_t v = 0; v < o.views.size(); ++v)
+    for (int k = 0; k < pose_numbers; ++k)
+      r.views[v].pose[k] += std::sqrt(o.views[v].prior_precision()[k]) * normal();
 }
 
 /// Solves A x = r by preconditioned conjugate gradients, until the residual in the preconditioner's
@@ -89,7 +101,7 @@ Curvature expected_curvature(const Objective& o, const Unknowns& at, std::uint64
   Curvature a{o.evaluate(at), {}, {}, {}};
   auto m = std::make_unique<Preconditioner>(Preconditioner::usual_tile_px, threads, precision);
   const Grid<double> found = o.prior.squared_curvature(at.z_nm);
-  if (o.sem) a.near = o.sem->near(*a.state.sem, at.mixture);
+  a.near = o.near(at, a.state);
   const GaussianBasis bends(bend_px, threads);
   for (int round = 0; round < rounds; ++round) {
     m->factor(o, at, a.state);

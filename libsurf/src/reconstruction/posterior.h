@@ -21,7 +21,7 @@ struct Posterior {
 struct Curvature {
   /// The state at the end, with the prior's weights of the expected squared curvature.
   Objective::State state;
-  SemTerm::Near near;       ///< empty without SEM
+  Objective::Near near;     ///< empty without SEM
   Grid<double> height_nm2;  ///< variances of heights without the SEM image, by cheap draws
   std::unique_ptr<const Preconditioner> preconditioner;  ///< factorised for `state`
 };

@@ -114,6 +114,7 @@ std::vector<Span> spans(int samples, int tile) {
 
 struct Preconditioner::Blocks {
   Eigen::LDLT<Eigen::MatrixXd> map, mixture, tip;
+  std::vector<Eigen::LDLT<Eigen::MatrixXd>> views;
   // Response of the surface to the tip, number by number at each sample.
   std::vector<float> follows;
   bool has_map = false, has_mixture = false, has_tip = false;
@@ -235,6 +236,16 @@ void Preconditioner::factor(const Objective& o, const Unknowns& at, const Object
     block.diagonal().array() *= 1 + 1e-9;
     few.mixture.compute(block);
   }
+  few.views.clear();
+  for (std::size_t v = 0; v < o.views.size(); ++v) {
+    const auto of_view = o.views[v].block(s.views[v], at.views[v], o.fit_mixture, nullptr);
+    Eigen::MatrixXd block(ViewTerm::numbers, ViewTerm::numbers);
+    for (int i = 0; i < ViewTerm::numbers; ++i)
+      for (int k = 0; k < ViewTerm::numbers; ++k)
+        block(i, k) = 0.5 * (of_view[i][k] + of_view[k][i]);
+    block.diagonal().array() *= 1 + 1e-9;
+    few.views.emplace_back(block);
+  }
   few.has_tip = false;
   if (o.afm && o.fit_tip) few.eliminate_tip(o, s, *this);
 }
@@ -287,8 +298,18 @@ void Preconditioner::Blocks::solve(const Step& r, Step& out, int threads) const 
     Eigen::Map<Eigen::VectorXd>(out.map.data(), map_numbers) =
         map.solve(Eigen::Map<const Eigen::VectorXd>(r.map.data(), map_numbers));
   if (has_mixture)
-    Eigen::Map<Eigen::Vector3d>(out.mixture.data()) =
-        mixture.solve(Eigen::Map<const Eigen::Vector3d>(r.mixture.data()));
+    Eigen::Map<Eigen::VectorXd>(out.mixture.data(), mixture_numbers) =
+        mixture.solve(Eigen::Map<const Eigen::VectorXd>(r.mixture.data(), mixture_numbers));
+  out.views.resize(r.views.size());
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    Eigen::VectorXd right(ViewTerm::numbers);
+    for (int k = 0; k < ViewTerm::numbers; ++k)
+      right(k) = k < pose_numbers ? r.views[v].pose[k] : r.views[v].mixture[k - pose_numbers];
+    const Eigen::VectorXd solved = views[v].solve(right);
+    for (int k = 0; k < ViewTerm::numbers; ++k)
+      (k < pose_numbers ? out.views[v].pose[k] : out.views[v].mixture[k - pose_numbers]) =
+          solved(k);
+  }
   if (!has_tip) return;
   Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(r.tip.data(), tip_numbers);
   constexpr std::size_t chunks = 16;  // whatever the threads, so that sums are the same

@@ -32,6 +32,7 @@ constexpr double worth_loosening = 1.3;
 // A model of pixels places a wall to this fraction of one.
 constexpr double edge_doubt_px = 0.15;
 constexpr double soft_px = 1;
+constexpr int margin_px = 12;  // of the surface around the SEM image, and of a view's heights
 
 void check_discrepancy(const SemData& sem) {
   double before_px = 1;
@@ -58,6 +59,48 @@ void check_discrepancy(const SemData& sem) {
                        "Give a value for each pixel");
 }
 
+/// What an image's likelihood needs, whatever it is of.
+void check_image(const SemData& sem, const char* name) {
+  validate(sem.image, name);
+  validate(sem.noise);
+  if (!sem.model)
+    throw InvalidInput(name, "there is no model of it", "Train or load one");
+  if (sem.gains.size() != sem.model->channels().size())
+    throw InvalidInput(name, "there is not one gain for each channel of the model",
+                       "Calibrate the model");
+  if (std::fabs(sem.image.pitch_x_nm / sem.image.pitch_y_nm - 1) > 1e-3)
+    throw InvalidInput(name, "its pixels are not square", "Resample it");
+  const double scene = sem.model->scope().pixel_nm;
+  if (scene > 0 && std::fabs(scene / sem.image.pitch_x_nm - 1) > 1e-3)
+    throw InvalidInput(
+        name,
+        fmt::format("its pixels are {} nm wide, the model's {} nm", sem.image.pitch_x_nm, scene),
+        "Train a model for this pixel size");
+  check_discrepancy(sem);
+}
+
+void check_views(const SemData* sem, const std::vector<SemView>& views,
+                 const ReconstructionOptions& o) {
+  if (views.empty()) return;
+  if (!sem)
+    throw InvalidInput("views", "there is no first SEM image, which is looked at from above",
+                       "Give one");
+  if (o.method != ReconstructionMethod::gauss_newton)
+    throw UsageError("`reconstruction.optimiser`", "only Gauss-Newton knows more than one view",
+                     "Leave it out");
+  for (const SemView& v : views) {
+    check_image(v.sem, "view");
+    if (!(v.pose.tilt_deg >= 0 && v.pose.tilt_deg <= largest_view_tilt_deg) ||
+        !std::isfinite(v.pose.azimuth_deg))
+      throw InvalidInput("view", fmt::format("its tilt is {} degrees", v.pose.tilt_deg),
+                         fmt::format("Give 0 to {:g}", largest_view_tilt_deg));
+    if (!(v.tilt_error_deg > 0 && v.scale_error > 0))
+      throw InvalidInput("view", "a standard error of its pose is not above 0",
+                         "Give a small one where the pose is known");
+    inverse(v.pose.to_plane);
+  }
+}
+
 void check(const AfmData* afm, const SemData* sem, const ReconstructionOptions& o) {
   if (!afm && !sem)
     throw InvalidInput("reconstruct", "neither an AFM nor an SEM image is given",
@@ -70,23 +113,8 @@ void check(const AfmData* afm, const SemData* sem, const ReconstructionOptions& 
       throw UsageError("upsample", fmt::format("{} is not in 1 to 8", afm->upsample), "3 is usual");
   }
   if (sem) {
-    validate(sem->image, "SEM image");
-    validate(sem->noise);
-    if (!sem->model)
-      throw InvalidInput("SEM image", "there is no model of it", "Train or load one");
-    if (sem->gains.size() != sem->model->channels().size())
-      throw InvalidInput("SEM image", "there is not one gain for each channel of the model",
-                         "Calibrate the model");
-    if (std::fabs(sem->image.pitch_x_nm / sem->image.pitch_y_nm - 1) > 1e-3)
-      throw InvalidInput("SEM image", "its pixels are not square", "Resample it");
-    const double scene = sem->model->scope().pixel_nm;
-    if (scene > 0 && std::fabs(scene / sem->image.pitch_x_nm - 1) > 1e-3)
-      throw InvalidInput(
-          "SEM image",
-          fmt::format("its pixels are {} nm wide, the model's {} nm", sem->image.pitch_x_nm, scene),
-          "Train a model for this pixel size");
+    check_image(*sem, "SEM image");
     inverse(sem->sem_to_afm);
-    check_discrepancy(*sem);
   }
   for (std::size_t i = 0; i < o.scales_px.size(); ++i)
     if (!(o.scales_px[i] > 0.2 && o.scales_px[i] <= 1000) ||
@@ -100,9 +128,10 @@ void check(const AfmData* afm, const SemData* sem, const ReconstructionOptions& 
 /// The state of a running reconstruction.
 class Work {
  public:
-  Work(const AfmData* afm, const SemData* sem, const ReconstructionOptions& options)
+  Work(const AfmData* afm, const SemData* sem, const std::vector<SemView>& views,
+       const ReconstructionOptions& options)
       : afm_(afm), sem_(sem), options_(options),
-        margin_(sem && afm ? margin_of(*sem) : 0), objective_{
+        margin_(sem && (afm || !views.empty()) ? margin_px : 0), objective_{
                                                        .prior = CurvaturePrior(1, 1),
                                                        .frame = frame_of(afm, sem, margin_)} {
     const SurfaceFrame& frame = objective_.frame;
@@ -127,6 +156,10 @@ class Work {
       objective_.sem.emplace(*sem, frame, margin_, margin_, options.threads);
       at_.mixture = {sem->gains, sem->offset, 0, sem->film ? usual_film_nm : 0};
       objective_.fit_film = sem->film.has_value();
+    }
+    for (const SemView& view : views) {
+      objective_.views.emplace_back(view, frame, at_.z_nm, margin_px, options.threads);
+      at_.views.push_back({{}, {view.sem.gains, view.sem.offset, 0, 0}});
     }
     objective_.fit_map = afm && sem && options.refine_transform;
     objective_.fit_drift = objective_.fit_map && options.refine_drift;
@@ -158,8 +191,6 @@ class Work {
   }
 
  private:
-  static int margin_of(const SemData&) { return 12; }
-
   void take(const ReconstructionState& s) {
     at_.z_nm = s.surface.z_nm;
     at_.surface_to_afm = s.sem_to_afm;
@@ -169,6 +200,12 @@ class Work {
     erode_again();
     if (sem_) {
       at_.mixture = {s.gains, s.offset, s.blur_px2, s.film_nm};
+    }
+    for (std::size_t v = 0; v < at_.views.size() && v < s.views.size(); ++v) {
+      std::copy_n(s.views[v].pose_change.begin(),
+                  std::min<std::size_t>(s.views[v].pose_change.size(), pose_numbers),
+                  at_.views[v].pose.begin());
+      at_.views[v].mixture = {s.views[v].gains, s.views[v].offset, 0, 0};
     }
     reports_ = s.scales;
     if (!reports_.empty()) set_prior(reports_.back().curvature_prior_per_nm);
@@ -187,6 +224,8 @@ class Work {
       s.blur_px2 = at_.mixture.blur_px2;
       s.film_nm = at_.mixture.film_nm;
     }
+    for (const ViewUnknowns& v : at_.views)
+      s.views.push_back({{v.pose.begin(), v.pose.end()}, v.mixture.gains, v.mixture.offset});
     if (objective_.fit_tip) s.tip_change.assign(at_.tip.begin(), at_.tip.end());
     return s;
   }
@@ -256,7 +295,7 @@ class Work {
                   {},
                   {}};
     if (s.afm) r.afm_residual = judge(afm_white(s), objective_.afm->used());
-    if (s.sem) r.sem_residual = judge(sem_white(s), objective_.sem->used());
+    if (s.sem) r.sem_residual = judge(sem_white(*objective_.sem, *s.sem), objective_.sem->used());
     converged_ = d.ended == "converged";
     reports_.push_back(r);
   }
@@ -295,17 +334,37 @@ class Work {
 
   std::int64_t pixels() const {
     return (objective_.afm ? objective_.afm->used_pixels() : 0) +
-           (objective_.sem ? objective_.sem->used_pixels() : 0);
+           (objective_.sem ? objective_.sem->used_pixels() : 0) + pixels_of_views();
+  }
+  std::int64_t pixels_of_views() const {
+    std::int64_t sum = 0;
+    for (const ViewTerm& v : objective_.views) sum += v.sem().used_pixels();
+    return sum;
   }
 
   Grid<double> afm_white(const Objective::State& s) const {
     return whiten(s.afm->residual, afm_->noise, objective_.afm->used());
   }
-  Grid<double> sem_white(const Objective::State& s) const {
-    Grid<double> explained = objective_.sem->image();
-    for (std::size_t i = 0; i < s.sem->discrepancy.size(); ++i)
-      explained.data()[i] -= s.sem->discrepancy.data()[i];
-    return whiten(explained, s.sem->simulated, objective_.sem->noise(), objective_.sem->used());
+  static Grid<double> sem_white(const SemTerm& term, const SemTerm::State& s) {
+    Grid<double> explained = term.image();
+    for (std::size_t i = 0; i < s.discrepancy.size(); ++i)
+      explained.data()[i] -= s.discrepancy.data()[i];
+    return whiten(explained, s.simulated, term.noise(), term.used());
+  }
+
+  ViewResult view_result(const ViewTerm& term, const ViewTerm::State& s,
+                         const ViewUnknowns& at) const {
+    const SurfaceFrame& f = term.frame();
+    const int m = term.margin();
+    const auto own = [&](const auto& grid) {
+      return cut_out(grid, m, m, f.width - 2 * m, f.height - 2 * m);
+    };
+    const Grid<double> white = sem_white(term.sem(), s.sem);
+    ViewResult out{term.pose(at), at.mixture.gains,  at.mixture.offset, own(s.sem.simulated),
+                   own(white),    own(term.sem().used()), judge(white, term.sem().used()), 0};
+    if (!s.sem.discrepancy.empty())
+      out.discrepancy_share = share_of(s.sem.discrepancy, s.sem.simulated, term.sem().used());
+    return out;
   }
 
   void add_warnings(Reconstruction& out) const {
@@ -373,7 +432,7 @@ class Work {
     }
     if (s.sem) {
       out.simulated_sem = cut(s.sem->simulated);
-      out.sem_residual = cut(sem_white(s));
+      out.sem_residual = cut(sem_white(*objective_.sem, *s.sem));
       if (!s.sem->discrepancy.empty()) {
         out.sem_discrepancy = cut(s.sem->discrepancy);
         if (!s.sem->row_jitter.empty())
@@ -383,6 +442,8 @@ class Work {
             share_of(s.sem->discrepancy, s.sem->simulated, objective_.sem->used());
       }
     }
+    for (std::size_t v = 0; v < objective_.views.size(); ++v)
+      out.views.push_back(view_result(objective_.views[v], s.views[v], at_.views[v]));
     if (options_.uncertainty) {
       const Posterior p =
           posterior(objective_, at_, options_.probes, options_.seed, options_.threads, precision(),
@@ -456,14 +517,21 @@ std::vector<double> default_scales_px(ReconstructionMethod method, int width, in
 
 Reconstruction reconstruct(const AfmData* afm, const SemData* sem,
                            const ReconstructionOptions& options, ReconstructionJournal* journal) {
+  return reconstruct(afm, sem, {}, options, journal);
+}
+
+Reconstruction reconstruct(const AfmData* afm, const SemData* sem,
+                           const std::vector<SemView>& views, const ReconstructionOptions& options,
+                           ReconstructionJournal* journal) {
   check(afm, sem, options);
-  return Work(afm, sem, options).run(journal);
+  check_views(sem, views, options);
+  return Work(afm, sem, views, options).run(journal);
 }
 
 double noise_floor_nm(const AfmData* afm, const SemData* sem, const HeightField& truth,
                       const ReconstructionOptions& options, int draws) {
   check(afm, sem, options);
-  return Work(afm, sem, options).noise_floor_nm(truth, draws);
+  return Work(afm, sem, {}, options).noise_floor_nm(truth, draws);
 }
 
 }  // namespace surf

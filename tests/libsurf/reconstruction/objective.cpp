@@ -351,7 +351,8 @@ TEST(SemTerm, NearsTransposeIsExact) {
   for (std::size_t i = 0; i < ju.size(); ++i) right += back.z_nm.data()[i] * u.z_nm.data()[i];
   for (std::size_t i = 0; i < u.mixture.size(); ++i) right += back.mixture[i] * u.mixture[i];
   EXPECT_NEAR(left, right, 1e-9 * std::fabs(left));
-  const Step a = o.product(at, s, u, &near), b = o.product(at, s, v, &near);
+  const Objective::Near all{near, {}};
+  const Step a = o.product(at, s, u, &all), b = o.product(at, s, v, &all);
   EXPECT_NEAR(dot(v, a), dot(u, b), 1e-9 * std::fabs(dot(u, a)));
   EXPECT_GT(dot(u, a), 0);
 }

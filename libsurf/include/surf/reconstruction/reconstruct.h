@@ -7,67 +7,16 @@
 #include <string>
 #include <vector>
 
-#include "surf/afm/background.h"
-#include "surf/afm/noise.h"
 #include "surf/afm/tip.h"
 #include "surf/core/affine.h"
 #include "surf/core/height_field.h"
 #include "surf/core/mask.h"
 #include "surf/core/parameters.h"
-#include "surf/core/placed_image.h"
 #include "surf/core/progress.h"
-#include "surf/sem/film_model.h"
-#include "surf/sem/image_model.h"
-#include "surf/sem/sem_noise.h"
+#include "surf/reconstruction/image_data.h"
+#include "surf/reconstruction/view.h"
 
 namespace surf {
-
-/// A levelled scan and its imaging model: image = dilation of the surface by the tip + noise.
-struct AfmData {
-  HeightField image;
-  Tip tip;  ///< with the pitch of the image
-  AfmNoise noise;
-  /// The dilation is computed with this many samples per pitch (thesis, appendix C.3), in [1, 8].
-  int upsample = 3;
-  /// Standard errors of the slopes that were taken off the scan, nm per nm: the surface may be
-  /// tilted by as much.
-  SlopeDoubt level_doubt = {};
-};
-
-/// What the model of an SEM image may be off by beside its noise: other physics, another detector,
-/// contamination, gains that drift. A Gaussian field of mean 0.
-struct SemDiscrepancy {
-  Grid<double> deviation;     ///< its standard deviation at each pixel, in the image's unit, >= 0
-  double correlation_px = 4;  ///< its correlation length, 1 to 1000; rounded to whole pixels
-};
-
-/// What a displacement of lines along x by `deviation_px` changes in the image, pixel by pixel: its
-/// slope over 1.5 pixels. Throws InvalidInput.
-Grid<double> line_jitter(const PlacedImage& image, double deviation_px);
-
-/// A discrepancy that grows with how far a pixel stands out of the image: `share` of its distance
-/// from the median grey level, over some pixels, and half of that as a gain that drifts over the
-/// image. Throws InvalidInput.
-std::vector<SemDiscrepancy> usual_discrepancy(const PlacedImage& image, double share);
-
-/// An SEM image and its imaging model: image = sum of gain * channel of the model + offset + noise.
-struct SemData {
-  PlacedImage image;  ///< with square pixels of the model's size
-  std::shared_ptr<const ImageModel> model;
-  std::vector<double> gains;  ///< one per channel of the model; 0 leaves a channel out
-  double offset = 0;
-  SemNoise noise;
-  Affine sem_to_afm;
-  /// Independent of each other, in the order of their correlation lengths; none: the model is
-  /// right.
-  std::vector<SemDiscrepancy> discrepancy = {};
-  /// What rows that are displaced along themselves by one standard deviation change in the image
-  /// (see `line_jitter`). Each row's displacement, in deviations, is standard normal and eliminated
-  /// with the discrepancy. Empty: rows are where they belong.
-  Grid<double> row_jitter = {};
-  /// A film on the specimen, whose thickness is fitted. Absent: there is none.
-  std::optional<FilmEffect> film = {};
-};
 
 enum class ReconstructionMethod {
   gauss_newton,         ///< matrix-free, with a trust region
@@ -127,14 +76,6 @@ struct ReconstructionOptions {
 /// the threads nor the precision.
 void describe(ParameterVisitor& visit, ReconstructionOptions& options);
 
-/// Statistics of an image's whitened residuals: standard normal and white if everything is right.
-struct ResidualReport {
-  double mean = 0, deviation = 1;
-  double along = 0, across = 0;  ///< correlation of neighbours along and across rows
-  std::int64_t pixels = 0;
-  bool like_noise = true;
-};
-
 struct ScaleReport {
   double sigma_px = 0;
   double curvature_prior_per_nm = 0;  ///< prior at the end of the scale
@@ -150,6 +91,13 @@ struct ScaleReport {
   ResidualReport afm_residual, sem_residual;
 };
 
+/// What is fitted of a view besides the surface.
+struct ViewState {
+  std::vector<double> pose_change;  ///< from the given pose
+  std::vector<double> gains;
+  double offset = 0;
+};
+
 /// The state that the next scale starts from.
 struct ReconstructionState {
   HeightField surface;
@@ -159,6 +107,7 @@ struct ReconstructionState {
   std::vector<ScaleReport> scales;  ///< the finished scales
   std::vector<double> tip_change;   ///< change from the given tip; empty: not fitted
   Point2 scan_drift_px{};
+  std::vector<ViewState> views;
 };
 
 /// Stores states, so that an interrupted reconstruction can be resumed. It is called after each
@@ -203,6 +152,7 @@ struct Reconstruction {
   std::vector<double> sem_row_jitter;
   /// Its root mean square over the standard deviation of the simulated image.
   double sem_discrepancy_share = 0;
+  std::vector<ViewResult> views;  ///< of further SEM images, as given
 
   /// Posterior standard deviation of each height, linearised; includes the bias by the prior, what
   /// the surface may be tilted by, and where its walls may be. Empty if not wanted.
@@ -227,6 +177,12 @@ std::vector<double> default_scales_px(ReconstructionMethod method, int width, in
 /// Interrupted.
 Reconstruction reconstruct(const AfmData* afm, const SemData* sem,
                            const ReconstructionOptions& options = {},
+                           ReconstructionJournal* journal = nullptr);
+
+/// The same with further SEM images of the surface, from other sides (docs/methods/views.md). The
+/// first image is looked at from above: the surface is in its frame. Only Gauss-Newton knows them.
+Reconstruction reconstruct(const AfmData* afm, const SemData* sem,
+                           const std::vector<SemView>& views, const ReconstructionOptions& options,
                            ReconstructionJournal* journal = nullptr);
 
 /// The root-mean-square error of heights, nm, that noise and the prior alone would leave. It is the
