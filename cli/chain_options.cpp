@@ -9,6 +9,7 @@
 
 #include "afm_options.h"
 #include "common_options.h"
+#include "picture_input.h"
 #include "sem_input.h"
 #include "surf/core/error.h"
 #include "surf/core/some_parameters.h"
@@ -77,7 +78,7 @@ void describe(ParameterVisitor& visit, ChainFiles& files) {
                     .form = "FILE",
                     .file = FileRole::read});
   visit(files.sem, {.name = "reconstruction.sem",
-                    .help = "The SEM image",
+                    .help = "The SEM image; further ones are of the same place from other sides",
                     .form = "FILE",
                     .file = FileRole::read});
   visit(files.tip, {.name = "reconstruction.tip",
@@ -108,9 +109,11 @@ void take_afm(const ChainOptions& o, const ChainFiles& files, workflow::AfmInput
   if (!files.tip.empty()) p.tip = read_tip_option(files.tip, p.tip_size, afm.scan);
 }
 
-void take_sem(const ChainOptions& o, const ChainFiles& files, workflow::SemInput& sem) {
-  sem.image = read_sem_input(files.sem, sem.reading, o.quiet);
-  sem.file = files.sem;
+void take_sem(const ChainOptions& o, const std::string& file, workflow::SemInput& sem) {
+  const FileChannel name = parse_file_channel(file);
+  if (!name.channel.empty()) sem.reading.channel = name.channel;
+  sem.image = read_sem_input(name.file, sem.reading, o.quiet);
+  sem.file = name.file;
 }
 
 void take_model(const ChainOptions& o, const ChainFiles& files, int threads,

@@ -14,7 +14,8 @@ namespace surf::cli {
 
 /// Files that `register` and `reconstruct` read, and what the specimen is made of.
 struct ChainFiles {
-  std::string afm, sem, landmarks, tip;
+  std::string afm, landmarks, tip;
+  std::vector<std::string> sem;
   io::MaterialChoice material;
 };
 void describe(ParameterVisitor& visit, ChainFiles& files);
@@ -33,7 +34,8 @@ void add_chain_options(CLI::App& app, ChainOptions& options);
 // What a described job cannot be told by text alone. Inputs are read, with a note of what had to be
 // assumed unless `quiet`. All throw UsageError, FileError and InvalidInput.
 void take_afm(const ChainOptions& options, const ChainFiles& files, workflow::AfmInput& afm);
-void take_sem(const ChainOptions& options, const ChainFiles& files, workflow::SemInput& sem);
+/// FILE or FILE:CHANNEL.
+void take_sem(const ChainOptions& options, const std::string& file, workflow::SemInput& sem);
 void take_model(const ChainOptions& options, const ChainFiles& files, int threads,
                 workflow::ModelRequest& model);
 /// `afm` and `sem` say where the pixels of landmarks are.

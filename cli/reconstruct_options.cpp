@@ -23,6 +23,7 @@ Examples:
   semsurf reconstruct --afm scan.gwy --sem image.tif --material Si --energy 1keV -o result
   semsurf reconstruct --afm scan.gwy --sem image.png --pixel-size 10nm --model si.json --landmarks places.csv -o result
   semsurf reconstruct --afm scan.gwy --sem image.tif --model si.json --transform transform.json --tip tip.gsf -o result
+  semsurf reconstruct --afm scan.gwy --sem up.tif --sem tilted.tif --tilt 0deg --tilt 3deg --model si.json -o result
   semsurf reconstruct --afm scan.gwy -o result
   semsurf reconstruct --sem image.tif --model si.json --gains 900,300 --offset 120 -o result)";
 
@@ -87,7 +88,14 @@ workflow::ReconstructJob make_reconstruct_job(const ChainOptions& o) {
   if (job.sem) take_model(o, inputs, job.options.threads, job.model);
   job.material_files = inputs.material.files;
   if (job.afm) take_afm(o, inputs, *job.afm);
-  if (job.sem) take_sem(o, inputs, *job.sem);
+  if (job.sem) {
+    for (std::size_t k = 1; k < inputs.sem.size(); ++k) {
+      job.views.emplace_back();
+      job.views.back().reading = job.sem->reading;
+      take_sem(o, inputs.sem[k], job.views.back());
+    }
+    take_sem(o, inputs.sem.front(), *job.sem);
+  }
   if (job.afm && job.sem) take_pose(o, inputs, job.afm->scan, job.sem->image, job.pose);
   if (!files.truth.empty()) {
     job.truth = io::read_height_field(files.truth).field;

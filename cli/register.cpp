@@ -38,10 +38,14 @@ int work(const ChainOptions& o) {
   if (files.sem.empty())
     throw UsageError("`reconstruction.sem`", "no SEM image is given",
                      "Name one, as `reconstruction.sem=image.tif`");
+  if (files.sem.size() > 1)
+    throw UsageError("`reconstruction.sem`", "several SEM images are given",
+                     "Register the one that looks straight down: 'semsurf reconstruct' finds the "
+                     "places of further ones");
   if (!job.picture.empty()) io::check_plot_target(job.picture);
   take_model(o, files, job.threads, job.model);
   take_afm(o, files, job.afm);
-  take_sem(o, files, job.sem);
+  take_sem(o, files.sem.front(), job.sem);
   take_pose(o, files, job.afm.scan, job.sem.image, job.pose);
   workflow::RegisterSummary s;
   {

@@ -77,7 +77,7 @@ TEST_F(JudgePlaces, TwoSurfacesThatBothExplainTheImagesAreBothGiven) {
 
   summary_.rival = rival;
   std::filesystem::create_directories(job_.folder);
-  write_reconstruction(job_, summary_, &afm_, &sem);
+  write_reconstruction(job_, summary_, &afm_, &sem, {});
   const io::TransformFile map = io::read_transform(job_.folder / "rival_transform.json");
   EXPECT_EQ(map.sem_to_afm, rival->found.sem_to_afm);
   EXPECT_FALSE(map.verified);

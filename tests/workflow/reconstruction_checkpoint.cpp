@@ -26,6 +26,7 @@ TEST(ReconstructionCheckpoint, AStateComesBackToTheLastBit) {
   state.film_nm = 1.7;
   state.scan_drift_px = {1.25, -2};
   state.tip_change = {0.25, -0.5};
+  state.views = {{{0.5, -1}, {90, 30}, 7}};
   state.scales.resize(2);
   state.scales[1].ended = "converged";
   state.scales[1].products = 12;
@@ -42,6 +43,10 @@ TEST(ReconstructionCheckpoint, AStateComesBackToTheLastBit) {
   EXPECT_EQ(back->film_nm, 1.7);
   EXPECT_EQ(back->scan_drift_px, state.scan_drift_px);
   EXPECT_EQ(back->tip_change, state.tip_change);
+  ASSERT_EQ(back->views.size(), 1u);
+  EXPECT_EQ(back->views[0].pose_change, state.views[0].pose_change);
+  EXPECT_EQ(back->views[0].gains, state.views[0].gains);
+  EXPECT_EQ(back->views[0].offset, state.views[0].offset);
   EXPECT_EQ(back->scales[1].ended, "converged");
   EXPECT_EQ(back->scales[1].factors, 40);
   EXPECT_EQ(back->scales[1].double_factors, 3);
@@ -59,14 +64,18 @@ TEST(ReconstructionCheckpoint, ACorrectionComesBackToTheLastBit) {
   }
   correction.mean = {0.7};
   correction.primaries = 1234;
-  const std::string bytes = pack(correction);
-  const auto back = unpack_correction(bytes);
+  ModelCorrection other = correction;
+  other.primaries = 5;
+  const std::string bytes = pack({correction, other});
+  const auto back = unpack_corrections(bytes);
   ASSERT_TRUE(back.has_value());
   EXPECT_EQ(pack(*back), bytes);
-  EXPECT_EQ(back->off, correction.off);
+  ASSERT_EQ(back->size(), 2u);
+  EXPECT_EQ(back->front().off, correction.off);
+  EXPECT_EQ(back->back().primaries, 5);
   EXPECT_FALSE(unpack(bytes).has_value());
   for (std::size_t size = 0; size < bytes.size(); ++size)
-    EXPECT_FALSE(unpack_correction(bytes.substr(0, size)).has_value()) << size;
+    EXPECT_FALSE(unpack_corrections(bytes.substr(0, size)).has_value()) << size;
 }
 
 TEST(ReconstructionCheckpoint, GivesBackTheLastStateOfTheSameJob) {

@@ -21,8 +21,8 @@ class Rounds : public ReconstructionJournal {
  public:
   explicit Rounds(ReconstructionCheckpoint* file) : file_(file) {}
 
-  void begin(int round, const ModelCorrection& correction) {
-    if (file_) file_->begin_round(round, correction);
+  void begin(int round, const std::vector<ModelCorrection>& corrections) {
+    if (file_) file_->begin_round(round, corrections);
     repeats_ = true;
   }
   std::optional<ReconstructionState> found() override {
@@ -64,17 +64,18 @@ double moved_nm(const Grid<double>& from, const Grid<double>& to) {
   return rms(change);
 }
 
-CorrectionRound report_of(const ModelCorrection& correction, const HeightField& before,
-                          const HeightField& after) {
+CorrectionRound report_of(const std::vector<ModelCorrection>& corrections,
+                          const HeightField& before, const HeightField& after) {
   CorrectionRound round;
+  const ModelCorrection& correction = corrections.front();
   for (std::size_t c = 0; c < correction.off.size(); ++c) {
     const double mean = correction.mean[c], per_yield = mean > 0 ? 1 / mean : 0;
     round.off_share.push_back(rms(correction.off[c]) * per_yield);
     round.error_share.push_back(rms(correction.error[c]) * per_yield);
   }
   round.moved_nm = moved_nm(before.z_nm, after.z_nm);
-  round.primaries = correction.primaries;
-  round.seconds = correction.seconds;
+  for (const ModelCorrection& c : corrections)
+    round.primaries += c.primaries, round.seconds += c.seconds;
   return round;
 }
 
@@ -101,49 +102,88 @@ std::vector<SemDiscrepancy> with_errors(std::vector<SemDiscrepancy> parts,
   return parts;
 }
 
+/// What the tilted beam of a view sees of a surface, without holes.
+HeightField seen_by(const ViewPose& pose, const HeightField& surface, const PlacedImage& image,
+                    int threads) {
+  constexpr int margin_px = 12;
+  HeightField out = heights_along_beam(surface, image, pose, margin_px, threads);
+  out.valid = {};
+  return out;
+}
+
+/// The corrections of all images at a surface: the first one's, then each view's.
+std::vector<ModelCorrection> corrections_at(const HeightField& surface, const Reconstruction& fit,
+                                            const SemData& sem, const std::vector<SemView>& views,
+                                            const ReconstructSummary& s,
+                                            const CorrectionRequest& request,
+                                            const Reporter& reporter) {
+  constexpr std::uint64_t apart = 1000;  // seeds of images, more than there are rounds
+  std::vector<ModelCorrection> out{
+      correction_at(surface, sem.image, *s.model, request, reporter)};
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    CorrectionRequest own = request;
+    own.seed += apart * (k + 1);
+    const PlacedImage& image = views[k].sem.image;
+    out.push_back(correction_at(seen_by(fit.views[k].pose, surface, image, request.threads), image,
+                                s.views[k].model, own, reporter));
+  }
+  return out;
+}
+
+/// Puts a model right by its correction, at an image whose data were `before`.
+void correct(const ModelCorrection& correction, const SemData& before,
+             const std::vector<double>& gains, SemData& sem) {
+  sem.model =
+      std::make_shared<CorrectedModel>(before.model, correction.off, sem.image.placement());
+  sem.discrepancy = with_errors(before.discrepancy, correction, gains);
+}
+
 }  // namespace
 
 Reconstruction correct_and_reconstruct(const AfmData* afm, SemData& sem,
+                                       std::vector<SemView>& views,
                                        const ReconstructionOptions& options,
-                                       const StoredModel& model, const CorrectionRequest& request,
-                                       int rounds, ReconstructionCheckpoint* checkpoint,
+                                       const ReconstructSummary& summary,
+                                       const CorrectionRequest& request, int rounds,
+                                       ReconstructionCheckpoint* checkpoint,
                                        const Reporter& reporter,
                                        std::vector<CorrectionRound>& done) {
   constexpr double share_of_fits = 0.75;  // of the progress; the uncertainty takes the rest
   Rounds journal(checkpoint);
   const SemData uncorrected = sem;
+  const std::vector<SemView> uncorrected_views = views;
   ReconstructionOptions o = options;
   o.uncertainty = false;
   const auto part = [&](int fit) { return share_of_fits * fit / (rounds + 1); };
   const auto fit = [&](int number) {
     o.watch = options.watch.part(part(number), part(number + 1));
-    return reconstruct(afm, &sem, o, &journal);
+    return reconstruct(afm, &sem, views, o, &journal);
   };
   Reconstruction result = fit(0);
   for (int round = 0; round < rounds; ++round) {
     const ReconstructionState before = journal.last();
-    std::optional<ModelCorrection> correction =
-        checkpoint ? checkpoint->correction(round) : std::nullopt;
-    if (!correction) {
+    std::vector<ModelCorrection> corrections =
+        checkpoint ? checkpoint->corrections(round) : std::vector<ModelCorrection>();
+    if (corrections.empty()) {
       begin(reporter, "correction");
       CorrectionRequest own = request;
       own.seed += static_cast<std::uint64_t>(round);
-      correction = correction_at(before.surface, sem.image, model, own, reporter);
+      corrections = corrections_at(before.surface, result, sem, views, summary, own, reporter);
       begin(reporter, "reconstruction");
     }
-    journal.begin(round, *correction);
-    sem.model =
-        std::make_shared<CorrectedModel>(model.model, correction->off, sem.image.placement());
-    sem.discrepancy = with_errors(uncorrected.discrepancy, *correction, before.gains);
+    journal.begin(round, corrections);
+    correct(corrections.front(), uncorrected, before.gains, sem);
+    for (std::size_t k = 0; k < views.size(); ++k)
+      correct(corrections[k + 1], uncorrected_views[k].sem, before.views[k].gains, views[k].sem);
     result = fit(round + 1);
-    done.push_back(report_of(*correction, before.surface, journal.last().surface));
+    done.push_back(report_of(corrections, before.surface, journal.last().surface));
     reporter.note(in_words(done.back()));
     if (done.back().moved_nm < nothing_px * sem.image.pitch_x_nm) break;
   }
   if (!options.uncertainty) return result;
   o = options;
   o.watch = options.watch.part(share_of_fits, 1);
-  return reconstruct(afm, &sem, o, &journal);
+  return reconstruct(afm, &sem, views, o, &journal);
 }
 
 }  // namespace surf::workflow

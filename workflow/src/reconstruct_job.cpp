@@ -30,6 +30,7 @@
 #include "surf/workflow/step_record.h"
 #include "surf/workflow/version.h"
 #include "tip_with_sem.h"
+#include "view_preparation.h"
 #include "what_held.h"
 
 namespace surf::workflow {
@@ -52,9 +53,27 @@ std::string text_of(const std::vector<double>& values) {
 
 std::string map_text(const Affine& m) { return text_of({m.xx, m.xy, m.x0, m.yx, m.yy, m.y0}); }
 
+/// What a state depends on of an SEM image; keys begin with `of`.
+void add_image(const std::string& of, const SemData& sem, const StoredModel& model, Identity& id) {
+  const PlacedImage& image = sem.image;
+  id[of] = hash_of(image.values.data()) + hash_of(image.valid.data()) +
+           text_of({image.pitch_x_nm, image.pitch_y_nm, image.origin_x_nm, image.origin_y_nm});
+  const std::string prefix = of == "SEM image" ? "" : of + "'s ";
+  id[prefix + "model"] = model.sha256;
+  id[prefix + "gains"] = text_of(sem.gains);
+  id[prefix + "offset"] = format_exact(sem.offset);
+  id[prefix + (prefix.empty() ? "SEM noise" : "noise")] =
+      text_of({sem.noise.slope, sem.noise.intercept, sem.noise.least_variance});
+  for (const SemDiscrepancy& part : sem.discrepancy)
+    id[prefix + "model error"] +=
+        fmt::format("{} {:g} ", hash_of(part.deviation.data()), part.correlation_px);
+}
+
 /// Everything that the states of the reconstruction depend on.
 Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const SemData* sem,
-                     const StoredModel* model, const CorrectionRequest* corrections, int rounds) {
+                     const StoredModel* model, const std::vector<SemView>& views,
+                     const std::vector<PreparedView>& of_views,
+                     const CorrectionRequest* corrections, int rounds) {
   Identity id{{"semsurf", version()},
               {"program", program_hash()},
               {"instruction set", std::string(instruction_set())}};
@@ -73,14 +92,7 @@ Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const S
     id["upsampling"] = std::to_string(afm->upsample);
   }
   if (sem) {
-    const PlacedImage& image = sem->image;
-    id["SEM image"] =
-        hash_of(image.values.data()) + hash_of(image.valid.data()) +
-        text_of({image.pitch_x_nm, image.pitch_y_nm, image.origin_x_nm, image.origin_y_nm});
-    id["model"] = model->sha256;
-    id["gains"] = text_of(sem->gains);
-    id["offset"] = format_exact(sem->offset);
-    id["SEM noise"] = text_of({sem->noise.slope, sem->noise.intercept, sem->noise.least_variance});
+    add_image("SEM image", *sem, *model, id);
     id["transform"] = map_text(sem->sem_to_afm);
     if (sem->film) {
       id["film"] = sem->film->material;
@@ -88,9 +100,14 @@ Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const S
         for (const double number : numbers) id["film"] += " " + format_exact(number);
     }
     if (!sem->row_jitter.empty()) id["line jitter"] = hash_of(sem->row_jitter.data());
-    for (const SemDiscrepancy& part : sem->discrepancy)
-      id["model error"] +=
-          fmt::format("{} {:g} ", hash_of(part.deviation.data()), part.correlation_px);
+  }
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    const std::string of = fmt::format("view {}", k + 2);
+    const SemView& view = views[k];
+    add_image(of, view.sem, of_views[k].model, id);
+    id[of + "'s pose"] = text_of({view.pose.tilt_deg, view.pose.azimuth_deg, view.tilt_error_deg,
+                                  view.scale_error}) +
+                         map_text(view.pose.to_plane);
   }
   if (corrections)
     id["corrections"] =
@@ -126,6 +143,7 @@ void check(const ReconstructJob& job) {
                      "Say `reconstruction.gains` and `reconstruction.offset`, or leave the film "
                      "to the gains, which cost no accuracy");
   if (!job.film.empty()) film_material(job);
+  check_views(job);
   check_parameters(parameters_of(job));
   if (job.sem) validate(job.sem->image, "SEM image");
   if (job.picture && !job.folder.empty()) io::check_plot_target(job.folder / "panel.png");
@@ -173,6 +191,14 @@ std::vector<std::string> reasons_of(const ReconstructSummary& s) {
           "what is left of the SEM image does not look like noise ({}): check the registration, "
           "the model and the calibration",
           seen(last.sem_residual)));
+  }
+  for (std::size_t k = 0; k < r.views.size(); ++k) {
+    const ViewResult& view = r.views[k];
+    if (!like_noise(view.statistics))
+      reasons.push_back(fmt::format(
+          "what is left of view {} does not look like noise ({}): check its tilt and azimuth, and "
+          "that it is of the same place",
+          k + 2, seen(view.statistics)));
   }
   if (r.film_nm >= largest_film_nm)
     reasons.push_back(
@@ -350,6 +376,22 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
   if (afm && job.sem) judge_places(job, s, image, *afm, told);
   if (job.sem) sem = prepare_sem(job, s, image, afm ? &*afm : nullptr, told);
   if (sem && !job.film.empty()) sem->film = film_of(job, s, told);
+  std::vector<SemView> views;
+  if (!job.views.empty()) {
+    std::optional<Reconstruction> coarse;
+    if (afm && !all_known(job.view_settings))
+      coarse = reconstruct(&*afm, &*sem, coarse_options(job, s, s.gains_tied));
+    views = prepare_views(job, s, *sem, coarse ? &coarse->surface : nullptr, told);
+    if (const auto strange = std::ranges::find(s.views, false, &PreparedView::explained);
+        strange != s.views.end() && !job.pose.accept_unverified) {
+      s.verdict = ReconstructionVerdict::not_registered;
+      s.reasons = {fmt::format(
+          "view {} has nothing in common with what the surface looks like from there (correlation "
+          "{:.2f}): is it of the same place, and are tilt and azimuth right?",
+          strange - s.views.begin() + 2, strange->correlation)};
+      return s;
+    }
+  }
 
   begin(told, "reconstruction");
   const AfmData* afm_data = afm ? &*afm : nullptr;
@@ -361,8 +403,8 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
     std::filesystem::create_directories(job.folder);
     checkpoint.emplace(
         job.folder / "checkpoint",
-        identity_of(options_of(job, s), afm_data, sem_data, s.model ? &*s.model : nullptr,
-                    corrections ? &*corrections : nullptr, job.corrections),
+        identity_of(options_of(job, s), afm_data, sem_data, s.model ? &*s.model : nullptr, views,
+                    s.views, corrections ? &*corrections : nullptr, job.corrections),
         told.on_note);
     if (const auto state = checkpoint->found()) {
       s.resumed = true;
@@ -374,9 +416,9 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
   options.watch = told.watch();
   ReconstructionCheckpoint* journal = checkpoint ? &*checkpoint : nullptr;
   if (corrections)
-    s.result = correct_and_reconstruct(afm_data, *sem_data, options, *s.model, *corrections,
+    s.result = correct_and_reconstruct(afm_data, *sem_data, views, options, s, *corrections,
                                        job.corrections, journal, told, s.corrections);
-  else s.result = reconstruct(afm_data, sem_data, options, journal);
+  else s.result = reconstruct(afm_data, sem_data, views, options, journal);
   if (afm && sem) s.rival = rival_surface(job, s, *afm, *sem, told);
   s.held = what_held(s.result);
   if (job.truth) s.truth = compare_with_truth(s.result, *job.truth);
@@ -384,7 +426,7 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
   if (!s.reasons.empty()) s.verdict = ReconstructionVerdict::flagged;
   if (!checkpoint) return s;
   begin(told, "writing");
-  s.written = write_reconstruction(job, s, afm_data, sem_data);
+  s.written = write_reconstruction(job, s, afm_data, sem_data, views);
   checkpoint->remove();
   return s;
 }

@@ -61,7 +61,7 @@ void ReconstructionCheckpoint::read_rounds() {
   for (std::size_t i = 1; i < blocks.size(); ++i) {
     std::string block = file_.read(blocks[i]);
     if (auto state = unpack(block)) rounds_.back().state = std::move(state);
-    else if (unpack_correction(block)) rounds_.push_back({std::move(block), {}});
+    else if (unpack_corrections(block)) rounds_.push_back({std::move(block), {}});
   }
 }
 
@@ -71,16 +71,18 @@ void ReconstructionCheckpoint::keep(const ReconstructionState& state) {
   with_remedy([&] { file_.append(pack(state)); });
 }
 
-std::optional<ModelCorrection> ReconstructionCheckpoint::correction(int round) const {
+std::vector<ModelCorrection> ReconstructionCheckpoint::corrections(int round) const {
   const auto number = static_cast<std::size_t>(round) + 1;
-  return number < rounds_.size() ? unpack_correction(rounds_[number].correction) : std::nullopt;
+  if (number >= rounds_.size()) return {};
+  return unpack_corrections(rounds_[number].corrections).value_or(std::vector<ModelCorrection>());
 }
 
-void ReconstructionCheckpoint::begin_round(int round, const ModelCorrection& correction) {
+void ReconstructionCheckpoint::begin_round(int round,
+                                           const std::vector<ModelCorrection>& corrections) {
   now_ = static_cast<std::size_t>(round) + 1;
   if (now_ < rounds_.size()) return;
-  rounds_.push_back({pack(correction), {}});
-  with_remedy([&] { file_.append(rounds_.back().correction); });
+  rounds_.push_back({pack(corrections), {}});
+  with_remedy([&] { file_.append(rounds_.back().corrections); });
 }
 
 }  // namespace surf::workflow

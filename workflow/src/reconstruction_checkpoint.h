@@ -24,16 +24,16 @@ class ReconstructionCheckpoint : public ReconstructionJournal {
   /// The last state of the round that has begun; before, of the reconstruction without corrections.
   std::optional<ReconstructionState> found() override;
   void keep(const ReconstructionState& state) override;
-  /// The correction of a round, counted from 0, if it is known.
-  std::optional<ModelCorrection> correction(int round) const;
-  /// States are of this round from now on. Keeps the correction if it is new.
-  void begin_round(int round, const ModelCorrection& correction);
+  /// The corrections of a round, counted from 0, of each SEM image; none: they are not known.
+  std::vector<ModelCorrection> corrections(int round) const;
+  /// States are of this round from now on. Keeps the corrections if they are new.
+  void begin_round(int round, const std::vector<ModelCorrection>& corrections);
   /// Deletes the file, because the work is done.
   void remove() { file_.remove(); }
 
  private:
   struct Round {
-    std::string correction;  ///< empty for the first
+    std::string corrections;  ///< empty for the first
     std::optional<ReconstructionState> state;
   };
 

@@ -10,6 +10,7 @@
 
 #include "reconstruction_panel.h"
 #include "reconstruction_report.h"
+#include "view_preparation.h"
 #include "surf/core/units.h"
 #include "surf/io/files.h"
 #include "surf/io/height_field_file.h"
@@ -39,6 +40,7 @@ Metadata made_by(const ReconstructJob& job, const ReconstructSummary& s, const A
   std::vector<fs::path> inputs;
   if (job.afm) inputs.push_back(job.afm->file);
   if (job.sem) inputs.push_back(job.sem->file);
+  for (const SemInput& view : job.views) inputs.push_back(view.file);
   Metadata made = step_record("reconstruct", record_of(parameters_used(job, s, afm, sem)), inputs);
   if (afm)
     made["tip"] = fmt::format("{} x {} samples, sha256 {}", afm->tip.z_nm.width(),
@@ -146,6 +148,17 @@ Image sem_image(const Reconstruction& r, const SemData& sem, const Metadata& mad
   return image;
 }
 
+Image view_image(const ViewResult& r, const SemView& view, const Metadata& made) {
+  Image image = placed_like(view.sem.image, made);
+  image.metadata["beam.tilt_deg"] = format_exact(r.pose.tilt_deg);
+  image.metadata["beam.azimuth_deg"] = format_exact(r.pose.azimuth_deg);
+  image.channels = {
+      channel("simulated", "1", r.simulated), channel("sem", "1", view.sem.image.values),
+      channel("residual", "1", r.residual), channel("used", "1", r.used),
+      valid_channel(view.sem.image.valid, r.simulated.width(), r.simulated.height())};
+  return image;
+}
+
 void append(std::string& line, const ResidualReport& r) {
   line += fmt::format(",{},{},{},{},{}", format_exact(r.mean), format_exact(r.deviation),
                       format_exact(r.along), format_exact(r.across), r.like_noise ? 1 : 0);
@@ -181,14 +194,19 @@ std::vector<fs::path> reconstruction_files(const fs::path& folder) {
                            "first_tip.txt", "model.json", "transform.json", "registration.png",
                            "history.csv", "panel.png", "report.json", "checkpoint"})
     files.push_back(folder / name);
+  for (std::size_t k = 2; k < most_views + 2; ++k) {
+    files.push_back(folder / fmt::format("simulated_sem{}.vti", k));
+    files.push_back(folder / fmt::format("model{}.json", k));
+  }
   return files;
 }
 
 std::vector<fs::path> write_reconstruction(const ReconstructJob& job, const ReconstructSummary& s,
-                                           const AfmData* afm, const SemData* sem) {
+                                           const AfmData* afm, const SemData* sem,
+                                           const std::vector<SemView>& views) {
   const Reconstruction& r = s.result;
   std::vector<fs::path> written;
-  const auto file = [&](const char* name) {
+  const auto file = [&](const std::string& name) {
     written.push_back(job.folder / name);
     return written.back();
   };
@@ -206,6 +224,12 @@ std::vector<fs::path> write_reconstruction(const ReconstructJob& job, const Reco
   if (sem) {
     io::write_image(file("simulated_sem.vti"), sem_image(r, *sem, made));
     written.push_back(model);
+  }
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    io::write_image(file(fmt::format("simulated_sem{}.vti", k + 2)),
+                    view_image(r.views[k], views[k], made));
+    const std::string own = view_model_name(s, k);
+    if (own != "model.json") io::write_model(file(own), s.views[k].model.trained);
   }
   if (afm && sem) {
     io::TransformFile transform;
@@ -226,7 +250,7 @@ std::vector<fs::path> write_reconstruction(const ReconstructJob& job, const Reco
   }
   io::write_text(file("history.csv"), history_text(r.scales));
   if (job.picture) {
-    io::Plot panel = reconstruction_panel(job, s, afm, sem);
+    io::Plot panel = reconstruction_panel(job, s, afm, sem, views);
     panel.metadata = made;
     io::write_plot(file("panel.png"), panel);
   }

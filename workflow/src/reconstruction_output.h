@@ -12,7 +12,8 @@ namespace surf::workflow {
 /// other files are complete. `afm` and `sem` are the inputs of the reconstruction, or null.
 std::vector<std::filesystem::path> write_reconstruction(const ReconstructJob& job,
                                                         const ReconstructSummary& summary,
-                                                        const AfmData* afm, const SemData* sem);
+                                                        const AfmData* afm, const SemData* sem,
+                                                        const std::vector<SemView>& views);
 
 /// The scales as a table: sigma_px, curvature_prior_per_nm, afm, sem, prior, gradient_norm,
 /// iterations, evaluations, products, ended, and for the whitened residuals of each image mean,

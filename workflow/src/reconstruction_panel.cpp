@@ -144,7 +144,8 @@ std::string title_of(const ReconstructJob& job, const ReconstructSummary& s) {
 }  // namespace
 
 io::Plot reconstruction_panel(const ReconstructJob& job, const ReconstructSummary& s,
-                              const AfmData* afm, const SemData* sem) {
+                              const AfmData* afm, const SemData* sem,
+                              const std::vector<SemView>& views) {
   const Reconstruction& r = s.result;
   std::vector<PlotPanel> first, second, third;
   if (afm) {
@@ -171,6 +172,21 @@ io::Plot reconstruction_panel(const ReconstructJob& job, const ReconstructSummar
     second.push_back(std::move(simulated));
     third.push_back(residual_panel("SEM residual, whitened",
                                    on_samples(r.surface, r.sem_residual, image.valid)));
+  }
+  constexpr std::size_t most_shown = 3;
+  for (std::size_t k = 0; k < std::min(views.size(), most_shown); ++k) {
+    const PlacedImage& image = views[k].sem.image;
+    const ViewResult& view = r.views[k];
+    const std::string name = fmt::format("view {}", k + 2);
+    first.push_back(picture(fmt::format("{}, tilted by {:.2f}° to {:.0f}°", name,
+                                        view.pose.tilt_deg, view.pose.azimuth_deg),
+                            image, PlotColors::grey, "grey level"));
+    second.push_back(picture(name + ", simulated", {image.placement(), view.simulated, {}},
+                             PlotColors::grey, "grey level"));
+    Mask used(view.used.width(), view.used.height());
+    std::ranges::copy(view.used.data(), used.data().begin());
+    third.push_back(
+        residual_panel(name + ", residual", {image.placement(), view.residual, std::move(used)}));
   }
   first.push_back(picture("surface", on_samples(r.surface, r.surface.z_nm, r.surface.valid),
                           PlotColors::relief, "nm"));

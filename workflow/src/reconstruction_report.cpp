@@ -135,6 +135,48 @@ Json sem_json(const ReconstructJob& job, const ReconstructSummary& s, const SemD
   return json;
 }
 
+Json residual_json(const ResidualReport& r) {
+  return {{"pixels", r.pixels},
+          {"mean", number(r.mean)},
+          {"deviation", number(r.deviation)},
+          {"correlation_along", number(r.along)},
+          {"correlation_across", number(r.across)},
+          {"like_noise", r.like_noise}};
+}
+
+Json views_json(const ReconstructJob& job, const ReconstructSummary& s) {
+  Json list = Json::array();
+  for (std::size_t k = 0; k < s.views.size(); ++k) {
+    const PreparedView& v = s.views[k];
+    Json json = file_json(job.views[k].file);
+    json["tilt_deg"] = v.tilt_deg;
+    json["azimuth_deg"] = v.azimuth_deg;
+    json["model"] = {{"file", view_model_name(s, k)},
+                     {"sha256", v.model.sha256},
+                     {"energy_ev", v.model.trained.scope.energy_ev}};
+    json["place"] = {{"shift_nm", {v.shift_x_nm, v.shift_y_nm}}, {"correlation", v.correlation}};
+    json["calibration"] = {{"gains", v.gains}, {"offset", v.offset}};
+    json["noise"] = {{"from", v.noise_from},
+                     {"slope", v.noise.slope},
+                     {"intercept", v.noise.intercept},
+                     {"least_variance", v.noise.least_variance}};
+    json["saturated"] = v.saturated;
+    if (k < s.result.views.size()) {
+      const ViewResult& r = s.result.views[k];
+      const Affine& m = r.pose.to_plane;
+      json["at_the_end"] = {{"tilt_deg", r.pose.tilt_deg},
+                            {"azimuth_deg", r.pose.azimuth_deg},
+                            {"image_to_plane", {m.xx, m.xy, m.x0, m.yx, m.yy, m.y0}},
+                            {"gains", r.gains},
+                            {"offset", r.offset},
+                            {"discrepancy_share", r.discrepancy_share},
+                            {"residual", residual_json(r.statistics)}};
+    }
+    list.push_back(json);
+  }
+  return list;
+}
+
 Json pose_json(const ReconstructJob& job, const ReconstructSummary& s) {
   const Pose& pose = *s.pose;
   Json json = {{"from", job.pose.transform  ? "given"
@@ -170,15 +212,6 @@ Json pose_json(const ReconstructJob& job, const ReconstructSummary& s) {
                              {"share_of_heights_apart", number(s.rival->share_apart)},
                              {"transform", map_json(s.rival->found.sem_to_afm)}};
   return json;
-}
-
-Json residual_json(const ResidualReport& r) {
-  return {{"pixels", r.pixels},
-          {"mean", number(r.mean)},
-          {"deviation", number(r.deviation)},
-          {"correlation_along", number(r.along)},
-          {"correlation_across", number(r.across)},
-          {"like_noise", r.like_noise}};
 }
 
 Json scales_json(const std::vector<ScaleReport>& scales) {
@@ -228,6 +261,12 @@ Json held_json(const Grid<unsigned char>& data_support) {
 
 }  // namespace
 
+std::string view_model_name(const ReconstructSummary& s, std::size_t view) {
+  return s.model && s.views[view].model.sha256 == s.model->sha256
+             ? "model.json"
+             : fmt::format("model{}.json", view + 2);
+}
+
 ReconstructJob parameters_of(const ReconstructJob& job) {
   ReconstructJob out;
   if (job.afm) {
@@ -240,6 +279,7 @@ ReconstructJob parameters_of(const ReconstructJob& job) {
     out.sem.emplace();
     out.sem->reading = job.sem->reading;
   }
+  out.view_settings = job.view_settings;
   out.model = job.model;
   out.pose = job.pose;
   out.calibration = job.calibration;
@@ -271,6 +311,14 @@ ReconstructJob parameters_used(const ReconstructJob& job, const ReconstructSumma
     used.calibration = {sem->gains, sem->offset};
     used.sem_noise = sem->noise;
   }
+  ViewSettings& views = used.view_settings;
+  views.gains.clear(), views.noises.clear(), views.places_nm.clear();
+  for (const PreparedView& view : s.views) {
+    views.gains.push_back(view.gains);
+    views.gains.back().push_back(view.offset);
+    views.noises.push_back(view.noise);
+    views.places_nm.push_back({view.shift_x_nm, view.shift_y_nm});
+  }
   if (afm && sem) {
     used.pose.transform = s.pose->sem_to_afm;
     used.tilt = s.tilt;
@@ -295,8 +343,13 @@ std::vector<std::string> repeating_command(const ReconstructJob& job, const Reco
   }
   if (sem) {
     add("sem", job.sem->file.string());
+    for (const SemInput& view : job.views) add("sem", view.file.string());
     add("model", (job.folder / "model.json").string());
+    for (std::size_t k = 0; k < job.views.size(); ++k)
+      add("view-model", (job.folder / view_model_name(s, k)).string());
     usual.sem.emplace();
+    used.view_settings.models.clear();
+    used.view_settings.energies_ev.clear();
   }
   const OptionNames names{{"level.method", "--level-method"},
                           {"level.degree", "--level-degree"},
@@ -321,6 +374,7 @@ std::string reconstruction_report(const ReconstructJob& job, const ReconstructSu
   json["warnings"] = s.warnings;
   if (afm) json["afm"] = afm_json(job, s, *afm);
   if (sem) json["sem"] = sem_json(job, s, *sem);
+  if (!s.views.empty()) json["views"] = views_json(job, s);
   if (s.pose) json["registration"] = pose_json(job, s);
   json["options"] = options_json(parameters_used(job, s, afm, sem));
   json["surface"] = {{"pixels", {r.surface.z_nm.width(), r.surface.z_nm.height()}},

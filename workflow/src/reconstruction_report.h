@@ -14,6 +14,9 @@ namespace surf::workflow {
 std::string reconstruction_report(const ReconstructJob& job, const ReconstructSummary& summary,
                                   const AfmData* afm, const SemData* sem);
 
+/// The name of the file of a view's model: the first image's, if it is the same.
+std::string view_model_name(const ReconstructSummary& summary, std::size_t view);
+
 /// The job without its images: the part that has parameters.
 ReconstructJob parameters_of(const ReconstructJob& job);
 

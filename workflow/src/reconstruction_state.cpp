@@ -12,8 +12,8 @@
 namespace surf::workflow {
 namespace {
 
-constexpr std::string_view mark = "semsurf reconstruction 5\n",
-                           correction_mark = "semsurf correction 1\n";
+constexpr std::string_view mark = "semsurf reconstruction 6\n",
+                           corrections_mark = "semsurf corrections 2\n";
 
 /// Writes numbers as 8 bytes each, lowest first.
 class Writer {
@@ -153,6 +153,12 @@ std::string pack(const ReconstructionState& state) {
   out.numbers(state.tip_change);
   out.whole(state.scales.size());
   for (const ScaleReport& scale : state.scales) write(out, scale);
+  out.whole(state.views.size());
+  for (const ViewState& view : state.views) {
+    out.numbers(view.pose_change);
+    out.numbers(view.gains);
+    out.number(view.offset);
+  }
   return std::move(out.bytes);
 }
 
@@ -168,12 +174,19 @@ std::optional<ReconstructionState> unpack(const std::string& bytes) {
   state.tip_change = in.numbers();
   const std::uint64_t scales = in.whole();
   for (std::uint64_t i = 0; in.good() && i < scales; ++i) state.scales.push_back(read_scale(in));
+  const std::uint64_t views = in.whole();
+  for (std::uint64_t i = 0; in.good() && i < views; ++i) {
+    ViewState view{in.numbers(), in.numbers(), 0};
+    view.offset = in.number();
+    state.views.push_back(std::move(view));
+  }
   if (!in.finished() || state.surface.z_nm.empty()) return std::nullopt;
   return state;
 }
 
-std::string pack(const ModelCorrection& correction) {
-  Writer out(correction_mark);
+namespace {
+
+void write(Writer& out, const ModelCorrection& correction) {
   out.whole(static_cast<std::uint64_t>(correction.primaries));
   out.number(correction.seconds);
   out.numbers(correction.mean);
@@ -183,11 +196,9 @@ std::string pack(const ModelCorrection& correction) {
       out.whole(static_cast<std::uint64_t>(image.width()));
       out.numbers(image.data());
     }
-  return std::move(out.bytes);
 }
 
-std::optional<ModelCorrection> unpack_correction(const std::string& bytes) {
-  Reader in(bytes, correction_mark);
+std::optional<ModelCorrection> read_correction(Reader& in) {
   ModelCorrection out;
   out.primaries = static_cast<std::int64_t>(in.whole());
   out.seconds = in.number();
@@ -202,6 +213,27 @@ std::optional<ModelCorrection> unpack_correction(const std::string& bytes) {
       image.data() = std::move(values);
       images->push_back(std::move(image));
     }
+  return in.good() ? std::optional(std::move(out)) : std::nullopt;
+}
+
+}  // namespace
+
+std::string pack(const std::vector<ModelCorrection>& corrections) {
+  Writer out(corrections_mark);
+  out.whole(corrections.size());
+  for (const ModelCorrection& correction : corrections) write(out, correction);
+  return std::move(out.bytes);
+}
+
+std::optional<std::vector<ModelCorrection>> unpack_corrections(const std::string& bytes) {
+  Reader in(bytes, corrections_mark);
+  std::vector<ModelCorrection> out;
+  const std::uint64_t images = in.whole();
+  for (std::uint64_t i = 0; in.good() && i < images; ++i) {
+    std::optional<ModelCorrection> one = read_correction(in);
+    if (!one) return std::nullopt;
+    out.push_back(std::move(*one));
+  }
   if (!in.finished()) return std::nullopt;
   return out;
 }

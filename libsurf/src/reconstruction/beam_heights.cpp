@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/cubic_sample.h"
+#include "surf/core/error.h"
 #include "surf/core/parallel.h"
 #include "surf/core/units.h"
 
@@ -159,6 +160,13 @@ BeamHeights::BeamHeights(const SurfaceFrame& surface, const Grid<double>& z, con
   });
 }
 
+bool BeamHeights::meets(int x, int y) const {
+  constexpr double rim_px = 2;
+  const Point2 at = hits_(x, y).at;
+  return at.x >= rim_px && at.y >= rim_px && at.x <= surface_.width - 1 - rim_px &&
+         at.y <= surface_.height - 1 - rim_px;
+}
+
 Grid<double> BeamHeights::change(const Grid<double>& dz) const {
   Grid<double> out(view_.width, view_.height);
   for (int y = 0; y < view_.height; ++y)
@@ -208,4 +216,26 @@ PoseChange BeamHeights::by_pose(const Grid<double>& weights) const {
 }
 
 }  // namespace reconstruction
+
+HeightField heights_along_beam(const HeightField& surface, const PlacedImage& image,
+                               const ViewPose& pose, int margin, int threads) {
+  validate(surface, "surface");
+  const bool holes = std::ranges::any_of(surface.valid.data(), [](auto v) { return v == 0; });
+  if (holes || std::fabs(surface.pitch_x_nm / surface.pitch_y_nm - 1) > 1e-3)
+    throw InvalidInput("surface", "a tilted beam needs one without holes, of square samples",
+                       "Resample it");
+  const double p = image.pitch_x_nm;
+  const reconstruction::SurfaceFrame ground{surface.z_nm.width(), surface.z_nm.height(),
+                                            surface.pitch_x_nm, surface.origin_x_nm,
+                                            surface.origin_y_nm},
+      view{image.values.width() + 2 * margin, image.values.height() + 2 * margin, p,
+           image.origin_x_nm - margin * p, image.origin_y_nm - margin * p};
+  const reconstruction::BeamHeights seen(ground, surface.z_nm, pose, view, threads);
+  HeightField out = view.field(seen.heights());
+  out.valid = Mask(view.width, view.height);
+  for (int y = 0; y < view.height; ++y)
+    for (int x = 0; x < view.width; ++x) out.valid(x, y) = seen.meets(x, y);
+  return out;
+}
+
 }  // namespace surf

@@ -33,7 +33,9 @@ class BeamHeights {
   /// The same for a change of the pose.
   Grid<double> change(const PoseChange& pose) const;
   PoseChange by_pose(const Grid<double>& weights) const;
-  /// Where a sample of the view meets the surface, in the surface's samples.
+  /// Whether a sample of the view meets the surface, not what is repeated beyond it.
+  bool meets(int x, int y) const;
+  /// Where, in the surface's samples.
   Point2 hit(int x, int y) const { return hits_(x, y).at; }
 
  private:

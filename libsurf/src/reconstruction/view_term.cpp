@@ -12,7 +12,6 @@ namespace surf::reconstruction {
 namespace {
 
 constexpr double largest_turn_deg = 1, largest_shift_px = 8;  // of one step
-constexpr double rim_px = 2;  // of the surface: what is beyond is repeated
 
 /// The image without the pixels whose beams miss the surface.
 SemData seen(const SemView& view, const SurfaceFrame& surface, const Grid<double>& z,
@@ -23,12 +22,8 @@ SemData seen(const SemView& view, const SurfaceFrame& surface, const Grid<double
   if (valid.empty()) valid = Mask(w, h, 1);
   const BeamHeights heights(surface, z, view.pose, frame, threads);
   for (int y = 0; y < h; ++y)
-    for (int x = 0; x < w; ++x) {
-      const Point2 at = heights.hit(x + margin, y + margin);
-      if (at.x < rim_px || at.y < rim_px || at.x > surface.width - 1 - rim_px ||
-          at.y > surface.height - 1 - rim_px)
-        valid(x, y) = 0;
-    }
+    for (int x = 0; x < w; ++x)
+      if (!heights.meets(x + margin, y + margin)) valid(x, y) = 0;
   return data;
 }
 

@@ -5,6 +5,7 @@
 
 #include "surf/core/affine.h"
 #include "surf/core/grid.h"
+#include "surf/core/placed_image.h"
 #include "surf/core/vec3.h"
 #include "surf/reconstruction/image_data.h"
 
@@ -27,6 +28,13 @@ struct BeamAxes {
   Vec3 across, up, against;
 };
 BeamAxes beam_axes(double tilt_deg, double azimuth_deg);
+
+/// The heights along the beam of what the pixels of an image at this pose see of a surface, and
+/// those of `margin` more samples on every side: the surface that an upright beam would see in
+/// place of the tilted one. Where a beam misses the surface its outermost heights go on, and the
+/// sample is not valid. The surface has no holes and square samples. Throws InvalidInput.
+HeightField heights_along_beam(const HeightField& surface, const PlacedImage& image,
+                               const ViewPose& pose, int margin = 0, int threads = 0);
 
 /// A further SEM image of the same surface, and how well its pose is known.
 struct SemView {

@@ -20,11 +20,28 @@ struct GivenCalibration {
   double offset = 0;
 };
 
+/// What further SEM images of the same place, `ReconstructJob::views`, are of. Lists have a value
+/// for each SEM image, the first included, or one for each further image.
+struct ViewSettings {
+  std::vector<double> tilts_deg;     ///< of the beam; the first image's is 0
+  std::vector<double> azimuths_deg;  ///< as in mc::Beam; none: 0
+  /// Of the beam, and models for it; none: as for the first image.
+  std::vector<double> energies_ev;
+  std::vector<std::filesystem::path> models;
+  double tilt_error_deg = 0.5;  ///< standard error of tilts along x and y
+  // What is known of further images beforehand, one for each; none: found.
+  std::vector<std::vector<double>> gains;  ///< of each channel of the model, then the offset
+  std::vector<SemNoise> noises;
+  std::vector<Point2> places_nm;  ///< shift of each image's frame in the plane that it sees
+};
+
 /// Reconstructs one surface from an AFM scan and an SEM image, or from one of them: the chain of
 /// the thesis's figure 1-3.
 struct ReconstructJob {
   std::optional<AfmInput> afm;
   std::optional<SemInput> sem;
+  std::vector<SemInput> views;  ///< further SEM images of the same place, from other sides
+  ViewSettings view_settings;
   ModelRequest model;
   PoseOptions pose;
   /// Required without a scan; absent: fitted with the scan.
@@ -104,10 +121,24 @@ struct RivalSurface {
   double share_apart = 0;  ///< of heights that differ by more than two deviations of the difference
 };
 
+/// A further SEM image, before the fit.
+struct PreparedView {
+  StoredModel model;
+  double tilt_deg = 0, azimuth_deg = 0;  ///< as given
+  double shift_x_nm = 0, shift_y_nm = 0;  ///< of its frame in the plane that it sees, as found
+  double correlation = 0;                 ///< of the image with what the surface would look like
+  std::vector<double> gains;
+  double offset = 0;
+  SemNoise noise;
+  std::string noise_from;
+  std::int64_t saturated = 0;
+  bool explained = true;  ///< it is of the same place, as far as its image tells
+};
+
 enum class ReconstructionVerdict {
   sound,           ///< converged, and the residuals look like noise
   flagged,         ///< there is a result, but check `reasons` first
-  not_registered,  ///< the images seem unrelated, so nothing was reconstructed
+  not_registered,  ///< images seem unrelated, so nothing was reconstructed
 };
 
 struct ReconstructSummary {
@@ -122,6 +153,7 @@ struct ReconstructSummary {
   std::optional<SemNoise> sem_noise;
   std::string sem_noise_from;  ///< source of the SEM noise, in words
   std::int64_t saturated = 0;  ///< number of saturated SEM pixels, which are left out
+  std::vector<PreparedView> views;
   SemTilt tilt;  ///< what was added to the levelled scan, given or found with the SEM image
   std::vector<CorrectionRound> corrections;
   Reconstruction result;

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "view_preparation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "chain_steps.h"
+#include "first_calibration.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/registration/find_shift.h"
+
+namespace surf::workflow {
+namespace {
+
+constexpr double least_correlation = 0.3;   // of a view with what the surface looks like from there
+constexpr double as_good = 0.02;            // correlations that differ by less are alike
+
+std::string count_of(std::size_t views) {
+  return views == 1 ? "1 further SEM image" : fmt::format("{} further SEM images", views);
+}
+
+template <class T>
+std::vector<T> for_each_view(const std::vector<T>& list, std::size_t views, const T& otherwise,
+                             const std::string& subject) {
+  if (list.empty()) return std::vector<T>(views, otherwise);
+  if (list.size() == views) return list;
+  if (list.size() == views + 1) return {list.begin() + 1, list.end()};
+  throw UsageError(subject,
+                   fmt::format("{} values are given, and there {} {}", list.size(),
+                               views == 1 ? "is" : "are", count_of(views)),
+                   "Give one for each SEM image in turn, or one for each after the first");
+}
+
+/// The image that the surface would give, over all that a tilted beam sees of it.
+PlacedImage predicted(const HeightField& surface, const PlacedImage& view, const ViewPose& pose,
+                      const ImageModel& model, const std::vector<double>& gains, int threads) {
+  const BeamAxes axes = beam_axes(pose.tilt_deg, pose.azimuth_deg);
+  // The plane's part that the surface's corners lie in.
+  Point2 low{1e300, 1e300}, high{-1e300, -1e300};
+  const auto [lowest, highest] = std::ranges::minmax_element(surface.z_nm.data());
+  for (const double x : {surface.x_nm(0), surface.x_nm(surface.z_nm.width() - 1)})
+    for (const double y : {surface.y_nm(0), surface.y_nm(surface.z_nm.height() - 1)})
+      for (const double z : {*lowest, *highest}) {
+        const Vec3 p{x, y, z};
+        low = {std::min(low.x, dot(p, axes.across)), std::min(low.y, dot(p, axes.up))};
+        high = {std::max(high.x, dot(p, axes.across)), std::max(high.y, dot(p, axes.up))};
+      }
+  PlacedImage whole;
+  whole.pitch() = view.pitch();
+  whole.origin_x_nm = low.x, whole.origin_y_nm = low.y;
+  whole.values = Grid<double>(static_cast<int>((high.x - low.x) / view.pitch_x_nm) + 2,
+                              static_cast<int>((high.y - low.y) / view.pitch_y_nm) + 2);
+  const HeightField along =
+      heights_along_beam(surface, whole, {pose.tilt_deg, pose.azimuth_deg, {}}, 0, threads);
+  HeightField filled = along;
+  filled.valid = {};
+  ModelOptions options;
+  options.threads = threads;
+  const ModelImages images = model.predict(filled, options);
+  for (std::size_t c = 0; c < images.size(); ++c)
+    for (std::size_t i = 0; i < whole.values.size(); ++i)
+      whole.values.data()[i] += gains[c] * images[c].data()[i];
+  whole.valid = along.valid;
+  return whole;
+}
+
+/// Of shifts that agree as well, the one nearest to where the images' frames say: gratings look
+/// alike a pitch away.
+ImageShift nearest_of_best(const std::vector<ImageShift>& shifts, Point2 expected) {
+  ImageShift best = shifts.front();
+  const auto away = [&](const ImageShift& s) {
+    return std::hypot(s.x_nm - expected.x, s.y_nm - expected.y);
+  };
+  for (const ImageShift& s : shifts)
+    if (s.correlation > shifts.front().correlation - as_good && away(s) < away(best)) best = s;
+  return best;
+}
+
+}  // namespace
+
+std::vector<double> of_each_view(const std::vector<double>& list, std::size_t views,
+                                 double otherwise, const std::string& subject) {
+  return for_each_view(list, views, otherwise, subject);
+}
+
+bool all_known(const ViewSettings& s) {
+  return !s.gains.empty() && !s.noises.empty() && !s.places_nm.empty();
+}
+
+void check_views(const ReconstructJob& job) {
+  const ViewSettings& v = job.view_settings;
+  const std::size_t views = job.views.size();
+  if (views > 0 && !job.sem)
+    throw UsageError("`reconstruction.sem`", "further SEM images need a first one", "Give one");
+  const std::vector<double> tilts = of_each_view(v.tilts_deg, views, 0, "`beam.tilt`");
+  of_each_view(v.azimuths_deg, views, 0, "`beam.azimuth`");
+  of_each_view(v.energies_ev, views, 0, "`reconstruction.view_energy`");
+  for_each_view(v.models, views, std::filesystem::path(), "`reconstruction.view_model`");
+  if (v.tilts_deg.size() == views + 1 && v.tilts_deg.front() != 0)
+    throw UsageError("`beam.tilt`",
+                     fmt::format("the first SEM image's is {:g} degrees", v.tilts_deg.front()),
+                     "Give the image that looks straight down first: the surface is in its frame");
+  for (const double tilt : tilts)
+    if (!(tilt >= 0 && tilt <= largest_view_tilt_deg))
+      throw UsageError("`beam.tilt`", fmt::format("{:g} degrees are out of range", tilt),
+                       fmt::format("Give 0 to {:g}deg; `beam.azimuth` says to which side",
+                                   largest_view_tilt_deg));
+  const auto known = [&](std::size_t count, const char* subject) {
+    if (count != 0 && count != views)
+      throw UsageError(subject,
+                       fmt::format("{} are given, and there {} {}", count,
+                                   views == 1 ? "is" : "are", count_of(views)),
+                       "Give one for each SEM image after the first");
+  };
+  known(v.gains.size(), "`reconstruction.view_gains`");
+  known(v.noises.size(), "`reconstruction.view_noise`");
+  known(v.places_nm.size(), "`reconstruction.view_place`");
+  if (views > most_views)
+    throw UsageError("`reconstruction.sem`", fmt::format("{} SEM images are given", views + 1),
+                     fmt::format("Give {} at most", most_views + 1));
+  for (const SemInput& view : job.views) validate(view.image, "SEM image");
+}
+
+std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary& s,
+                                   const SemData& sem, const HeightField* surface,
+                                   const Reporter& told) {
+  std::vector<SemView> out;
+  const std::size_t views = job.views.size();
+  if (views == 0) return out;
+  begin(told, "views");
+  const ViewSettings& settings = job.view_settings;
+  const std::vector<double> tilts = of_each_view(settings.tilts_deg, views, 0, "`beam.tilt`"),
+                            azimuths =
+                                of_each_view(settings.azimuths_deg, views, 0, "`beam.azimuth`"),
+                            energies = of_each_view(settings.energies_ev, views, 0,
+                                                    "`reconstruction.view_energy`");
+  const auto models = for_each_view(settings.models, views, std::filesystem::path(),
+                                    "`reconstruction.view_model`");
+  const int threads = job.options.threads;
+  for (std::size_t k = 0; k < views; ++k) {
+    PreparedView found;
+    found.tilt_deg = tilts[k], found.azimuth_deg = azimuths[k];
+    PlacedImage image = job.views[k].image;
+    found.saturated = leave_out_saturated(image);
+    ModelRequest request = job.model;
+    if (request.folder.empty()) request.folder = job.folder;
+    if (energies[k] > 0 && energies[k] != request.energy_ev) {
+      request.energy_ev = energies[k];
+      request.file.clear();
+    }
+    if (!models[k].empty()) request.file = models[k];
+    found.model = model_of(request, image, told);
+    const ImageModel& model = *found.model.model;
+    SemView view;
+    view.pose = {tilts[k], azimuths[k], {}};
+    view.tilt_error_deg = settings.tilt_error_deg;
+    std::vector<double> gains = sem.gains;
+    gains.resize(model.channels().size(), 0.0);
+
+    // Where it looks: by the surface, or, where none is known yet, by the first image.
+    const PlacedImage there =
+        surface ? predicted(*surface, image, view.pose, model, gains, threads) : sem.image;
+    std::vector<ImageShift> shifts = find_shifts(there, image);
+    if (shifts.empty()) shifts = {{0, 0, 0}};
+    ImageShift shift = nearest_of_best(shifts, {});
+    if (!settings.places_nm.empty())
+      shift.x_nm = settings.places_nm[k].x, shift.y_nm = settings.places_nm[k].y;
+    found.shift_x_nm = shift.x_nm, found.shift_y_nm = shift.y_nm;
+    found.correlation = shift.correlation;
+    found.explained = !settings.places_nm.empty() || shift.correlation >= least_correlation;
+    view.pose.to_plane = {1, 0, shift.x_nm, 0, 1, shift.y_nm};
+
+    std::optional<GivenCalibration> given;
+    if (!settings.gains.empty()) {
+      const std::vector<double>& known = settings.gains[k];
+      if (known.size() != model.channels().size() + 1)
+        throw UsageError("`reconstruction.view_gains`",
+                         fmt::format("view {} has {} numbers, and its model {} channels", k + 2,
+                                     known.size(), model.channels().size()),
+                         "Give a gain for each channel, then the offset");
+      given = GivenCalibration{{known.begin(), known.end() - 1}, known.back()};
+    } else if (!surface) {
+      given = GivenCalibration{gains, sem.offset};
+    }
+    const std::optional<SemNoise> noise =
+        settings.noises.empty() ? job.sem_noise : std::optional(settings.noises[k]);
+    HeightField along;
+    if (surface) {
+      along = heights_along_beam(*surface, image, view.pose, 0, threads);
+      if (image.valid.empty()) image.valid = Mask(image.values.width(), image.values.height(), 1);
+    }
+    FirstCalibration first =
+        calibrate_first(image, surface ? &along : nullptr, model, {}, given, noise, threads);
+    if (surface) {
+      // What the scan does not know of the surface is not noise.
+      HeightField whole = along;
+      whole.valid = {};
+      PlacedImage seen = image;
+      for (std::size_t i = 0; i < seen.valid.size(); ++i)
+        seen.valid.data()[i] = seen.valid.data()[i] && along.valid.data()[i];
+      calibrate_again(seen, whole, model, given.has_value(), noise.has_value(), threads, first);
+    }
+    view.sem = {image, found.model.model, first.gains, first.offset, first.noise, {},
+                usual_discrepancy(image, job.model_error)};
+    found.gains = first.gains, found.offset = first.offset;
+    found.noise = first.noise, found.noise_from = first.noise_from;
+    for (const std::string& warning : first.warnings) told.warn(warning);
+    told.note(fmt::format(
+        "view {}: {:g} deg to {:g} deg; displaced by {:.1f}, {:.1f} nm, correlation {:.2f}", k + 2,
+        found.tilt_deg, found.azimuth_deg, found.shift_x_nm, found.shift_y_nm, found.correlation));
+    s.views.push_back(std::move(found));
+    out.push_back(std::move(view));
+  }
+  return out;
+}
+
+}  // namespace surf::workflow
