@@ -8,10 +8,12 @@
 #include "common_options.h"
 #include "exit_codes.h"
 #include "job_reporter.h"
+#include "picture_input.h"
 #include "sem_input.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/cache.h"
+#include "surf/io/height_field_file.h"
 #include "surf/io/sim/materials.h"
 #include "surf/workflow/profile_job.h"
 #include "terminal.h"
@@ -22,13 +24,33 @@ namespace {
 constexpr const char* examples =
     R"(How wide lines, trenches and holes are, how steep their walls, and how rough their edges, with standard
 errors: profiles of such shapes are simulated and compared with the image. The threshold method stands beside.
-Lines run along y, or along x with --along-x. How high walls are no upright view shows: say it.
+Lines run along y, or along x with --along-x. How high walls are no upright view shows: say it, give a scan
+(--afm), or further images from other sides (--sem, --tilt). FOLDER/surface.vti is the surface.
 Exit code 4: the result is not to be trusted, and the reasons are said.
 
 Examples:
   semsurf profile lines.tif --height 80nm --material Si --energy 1keV --spot 2nm -o lines
   semsurf profile trench.tif --kind trench --height 120nm --angle 88deg --material SiO2 --energy 800eV -o trench
+  semsurf profile up.tif --sem tilted.tif --tilt 3deg --height 100nm --height-error 20nm --material Si --energy 1keV -o lines
+  semsurf profile lines.tif --afm scan.gwy --material Si --energy 1keV -o lines
   semsurf profile via.png --pixel-size 2nm --kind hole --height 100nm --material Si --energy 1keV -o via)";
+
+/// Files besides the image.
+struct ProfileFiles {
+  std::vector<std::string> views;
+  std::string afm;
+};
+void describe(ParameterVisitor& visit, ProfileFiles& files) {
+  visit(files.views, {.name = "reconstruction.sem",
+                      .help = "A further SEM image of such features, from another side or by "
+                              "another detector",
+                      .form = "FILE",
+                      .file = FileRole::read});
+  visit(files.afm, {.name = "reconstruction.afm",
+                    .help = "An AFM scan that shows how high walls are, levelled",
+                    .form = "FILE",
+                    .file = FileRole::read});
+}
 
 struct Options {
   BoundParameters bound;
@@ -39,8 +61,9 @@ struct Options {
 workflow::ProfileJob make_job(const Options& o) {
   workflow::ProfileJob job;
   io::MaterialChoice material;
+  ProfileFiles files;
   job.cache = io::cache_folder("");
-  o.bound.apply(material), o.bound.apply(job);
+  o.bound.apply(material), o.bound.apply(files), o.bound.apply(job);
   if (o.image.empty()) throw UsageError("IMAGE", "no image is given", "Name an SEM image");
   if (job.folder.empty()) throw UsageError("`output`", "no folder is given", "Add `output=result`");
   if (!material.name.empty()) {
@@ -54,6 +77,18 @@ workflow::ProfileJob make_job(const Options& o) {
                      "Say what the image was taken with, as `beam.energy=1keV`");
   job.sem.image = read_sem_input(o.image, job.sem.reading, o.quiet);
   job.sem.file = o.image;
+  for (const std::string& view : files.views) {
+    const FileChannel name = parse_file_channel(view);
+    job.views.emplace_back();
+    job.views.back().reading = job.sem.reading;
+    if (!name.channel.empty()) job.views.back().reading.channel = name.channel;
+    job.views.back().image = read_sem_input(name.file, job.views.back().reading, o.quiet);
+    job.views.back().file = name.file;
+  }
+  if (!files.afm.empty()) {
+    job.scan = io::read_height_field(files.afm).field;
+    job.scan_file = files.afm;
+  }
   return job;
 }
 
@@ -97,6 +132,15 @@ void print_summary(const workflow::ProfileJob& job, const workflow::ProfileSumma
       threshold.value += w.value / static_cast<double>(s.threshold_widths_nm.size());
     print_line("", fmt::format("{:.2f} nm by the threshold method", threshold.value));
   }
+  if (job.height_error_nm > 0 || s.scan_height_nm)
+    print_line("height", length(s.fit.left[profile_height]));
+  for (std::size_t k = 1; k < s.fit.sights.size(); ++k)
+    if (s.fit.sights[k].tilt_deg.value != 0)
+      print_line(fmt::format("view {}", k + 1),
+                 fmt::format("tilted by {:.3f} ± {:.3f} deg; {:.1f} % of its contrast unexplained",
+                             s.fit.sights[k].tilt_deg.value,
+                             s.fit.sights[k].tilt_deg.standard_error,
+                             100 * s.fit.sights[k].discrepancy_share));
   if (s.measured_pitch_nm) print_line("pitch", length(*s.measured_pitch_nm));
   print_wall(job.walls_apart ? "left wall" : "wall", s.fit.left);
   if (job.walls_apart) print_wall("right wall", s.fit.right);
@@ -128,10 +172,14 @@ void add_profile(CLI::App& app, Action& action) {
   with_role(sub->add_option("IMAGE", o->image, "The SEM image")->type_name("FILE"), FileRole::read);
   o->bound.headings = {
       {"profile", "Shape"},  {"sem", "SEM image"},        {"specimen", "SEM image"},
+      {"reconstruction", "Further images"}, {"reconstruction.afm", "Shape"},
+      {"beam.tilt", "Further images"}, {"beam.azimuth", "Further images"},
+      {"profile.view_signal", "Further images"},
       {"beam", "SEM image"}, {"simulation", "SEM image"}, {"output", "Output"},
       {"job", "Output"}};
   o->bound.looks["output"] = {.name = "-o,--output"};
   o->bound.add<io::MaterialChoice>(*sub, "");
+  o->bound.add<ProfileFiles>(*sub, "");
   o->bound.add<workflow::ProfileJob>(*sub, "");
   add_quiet_flag(*sub, o->quiet)->group("Output");
   sub->footer(examples);

@@ -78,7 +78,7 @@ TEST_F(ProfileJobTest, MeasuresLinesAndSaysHowWell) {
   EXPECT_GT(width.standard_error, 0.05);
   EXPECT_LT(width.standard_error, 1);
   EXPECT_NEAR(angle.value, 84, std::min(4.0, 3 * angle.standard_error));
-  EXPECT_NEAR(s.fit.gain, gain, 0.2 * gain);
+  EXPECT_NEAR(s.fit.sights.front().gain, gain, 0.2 * gain);
   EXPECT_NEAR(s.pitch_nm, 100, 1);
   EXPECT_NEAR(s.threshold_widths_nm.front().value, 40, 5);
 
@@ -155,10 +155,10 @@ TEST_F(ProfileJobTest, LeftAndRightAreTheFeaturesOwn) {
     for (int x = 50; x < 60; ++x) image.values(x, y) = 0.5 * (image.values(x, y) + 700);
   const ProfileSummary s = run(job_);
   const std::string csv = io::read_file(job_.folder / "profiles.csv");
-  ASSERT_EQ(s.fit.profiles.size(), 2u);
+  ASSERT_EQ(s.fit.sights.front().profiles.size(), 2u);
   EXPECT_EQ(csv.substr(csv.find('\n') + 1, 5),
-            s.fit.profiles[0].material_right ? "right" : "left,");
-  for (const FittedEdge& e : s.fit.edges)
+            s.fit.sights.front().profiles[0].material_right ? "right" : "left,");
+  for (const FittedEdge& e : s.fit.edges())
     EXPECT_EQ(e.edge.material_right, e.place_nm.value > 45 + 4 || e.place_nm.value < -40)
         << e.place_nm.value;
 }

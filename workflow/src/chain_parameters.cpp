@@ -103,18 +103,6 @@ void describe_calibration(ParameterVisitor& visit, std::optional<GivenCalibratio
   calibration->offset = *offset;
 }
 
-/// A list with a value for each SEM image.
-void describe_list(ParameterVisitor& visit, std::vector<double>& values, Parameter about) {
-  const Parameter one = about;  // which range and unit its values have
-  visit.form(
-      about, [&] { return text_of(values); },
-      [&](std::string_view text, const std::string& subject) {
-        for (const std::string_view word : split(text, ","))
-          values.push_back(parse_value(word, one, subject));
-      },
-      FieldKind::list);
-}
-
 template <class T>
 std::string texts_of(const std::vector<T>& list, const std::function<std::string(const T&)>& text) {
   std::string all;
@@ -137,7 +125,22 @@ void describe_known(ParameterVisitor& visit, std::vector<T>& list, Parameter abo
       FieldKind::list);
 }
 
-void describe_known(ParameterVisitor& visit, ViewSettings& views) {
+void describe_known(ParameterVisitor& visit, KnownViews& views) {
+  visit.form(
+      {.name = "reconstruction.view_model",
+       .help = "Fast model for each SEM image, or for each after the first",
+       .otherwise = "as for the first",
+       .form = "FILE.json",
+       .recorded = false,
+       .file = FileRole::read},
+      [&] {
+        std::string text;
+        for (const std::filesystem::path& file : views.models)
+          text += (text.empty() ? "" : " ") + file.string();
+        return text;
+      },
+      [&](std::string_view text, const std::string&) { views.models.emplace_back(text); },
+      FieldKind::list);
   describe_known<std::vector<double>>(
       visit, views.gains,
       {.name = "reconstruction.view_gains",
@@ -168,54 +171,6 @@ void describe_known(ParameterVisitor& visit, ViewSettings& views) {
                            "Give a shift along x and along y in nm, as 12,-3");
         return Point2{v[0], v[1]};
       });
-}
-
-void describe_views(ParameterVisitor& visit, ViewSettings& views) {
-  describe_list(visit, views.tilts_deg,
-                {.name = "beam.tilt",
-                 .help = "Angle of the beam from straight down in each SEM image in turn, or in "
-                         "each after the first, whose is 0",
-                 .unit = Unit::deg,
-                 .limits = within(0, largest_view_tilt_deg),
-                 .otherwise = "0deg",
-                 .form = "ANGLE"});
-  describe_list(visit, views.azimuths_deg,
-                {.name = "beam.azimuth",
-                 .help = "Direction that the beam is tilted to in each SEM image, or in each after "
-                         "the first: 0 is +x, 90deg is +y",
-                 .unit = Unit::deg,
-                 .limits = within(-360, 360),
-                 .otherwise = "0deg",
-                 .form = "ANGLE"});
-  describe_list(visit, views.energies_ev,
-                {.name = "reconstruction.view_energy",
-                 .help = "Energy of the beam in each SEM image, or in each after the first",
-                 .unit = Unit::ev,
-                 .limits = within(mc::min_beam_energy_ev, mc::max_beam_energy_ev),
-                 .otherwise = "as of the first",
-                 .form = "ENERGY"});
-  visit.form(
-      {.name = "reconstruction.view_model",
-       .help = "Fast model for each SEM image, or for each after the first",
-       .otherwise = "as for the first",
-       .form = "FILE.json",
-       .recorded = false,
-       .file = FileRole::read},
-      [&] {
-        std::string text;
-        for (const std::filesystem::path& file : views.models)
-          text += (text.empty() ? "" : " ") + file.string();
-        return text;
-      },
-      [&](std::string_view text, const std::string&) { views.models.emplace_back(text); },
-      FieldKind::list);
-  visit(views.tilt_error_deg,
-        {.name = "reconstruction.tilt_error",
-         .help = "What tilts may be off by, as a standard error; with a scan or three views they "
-                 "are fitted within it",
-         .unit = Unit::deg,
-         .limits = within(0.001, 10)});
-  describe_known(visit, views);
 }
 
 /// Whether the tip is fitted, as two flags. Without either, it depends on how the tip was found.
@@ -345,7 +300,8 @@ void describe(ParameterVisitor& visit, ReconstructJob& job) {
   if (job.sem) {
     describe(visit, *job.sem);
     describe(visit, job.model);
-    describe_views(visit, job.view_settings);
+    describe(visit, job.view_settings);
+    describe_known(visit, job.known_views);
     describe_calibration(visit, job.calibration);
     visit.form(
         {.name = "reconstruction.sem_noise",

@@ -52,6 +52,22 @@ void describe_path(ParameterVisitor& visit, std::filesystem::path& path, const P
       [&](std::string_view text, const std::string&) { path = text; });
 }
 
+void describe_numbers(ParameterVisitor& visit, std::vector<double>& values,
+                      const Parameter& about) {
+  visit.form(
+      about,
+      [&] {
+        std::string text;
+        for (const double value : values) text += (text.empty() ? "" : ",") + format_exact(value);
+        return text;
+      },
+      [&](std::string_view text, const std::string& subject) {
+        for (const std::string_view word : split(text, ","))
+          values.push_back(parse_value(word, about, subject));
+      },
+      FieldKind::list);
+}
+
 void describe_names(ParameterVisitor& visit, std::vector<std::string>& names,
                     const Parameter& about) {
   visit.form(

@@ -26,6 +26,8 @@ void describe_images(ParameterVisitor& visit, std::vector<std::filesystem::path>
 void describe_path(ParameterVisitor& visit, std::filesystem::path& path, const Parameter& about);
 
 /// Names separated by commas: "NAME,NAME".
+/// Numbers that are given one by one, or with commas between them.
+void describe_numbers(ParameterVisitor& visit, std::vector<double>& values, const Parameter& about);
 void describe_names(ParameterVisitor& visit, std::vector<std::string>& names,
                     const Parameter& about);
 

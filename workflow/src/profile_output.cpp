@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "surf/core/units.h"
 #include "surf/io/files.h"
+#include "surf/io/height_field_file.h"
+#include "surf/io/image_file.h"
 #include "surf/io/plot.h"
 #include "surf/workflow/step_record.h"
 #include "surf/workflow/version.h"
@@ -46,6 +49,11 @@ Json report(const ProfileJob& job, const ProfileSummary& s) {
                {"kind", name(job.kind)},           {"material", job.material.name},
                {"energy_ev", job.energy_ev},       {"spot_nm", job.spot_nm},
                {"simulated_pitch_nm", s.pitch_nm}, {"simulated_profiles", s.simulated}};
+  for (const SemInput& view : job.views) json["views"].push_back(view.file.filename().string());
+  if (s.scan_height_nm) {
+    json["scan"] = job.scan_file.filename().string();
+    json["scan_height_nm"] = measured(*s.scan_height_nm);
+  }
   if (s.hole) json["hole"] = {{"x_nm", s.hole->x_nm}, {"y_nm", s.hole->y_nm}};
   if (job.kind != FeatureKind::edge) json["width_nm"] = measured(s.fit.left[profile_width]);
   if (s.measured_pitch_nm) json["pitch_nm"] = measured(*s.measured_pitch_nm);
@@ -63,9 +71,16 @@ Json report(const ProfileJob& job, const ProfileSummary& s) {
     json["edge_roughness"] = roughness_json(s.fit.edge_roughness);
   if (!s.fit.width_spectrum.density_nm3.empty())
     json["width_roughness"] = roughness_json(s.fit.width_roughness);
-  json["gain"] = s.fit.gain;
-  json["offset"] = s.fit.offset;
-  json["unexplained_share"] = s.discrepancy_share;
+  json["gain"] = s.fit.sights.front().gain;
+  json["offset"] = s.fit.sights.front().offset;
+  json["unexplained_share"] = s.fit.sights.front().discrepancy_share;
+  for (std::size_t k = 1; k < s.fit.sights.size(); ++k) {
+    const SightFit& view = s.fit.sights[k];
+    json["fitted_views"].push_back({{"tilt_deg", measured(view.tilt_deg)},
+                                    {"gain", view.gain},
+                                    {"offset", view.offset},
+                                    {"unexplained_share", view.discrepancy_share}});
+  }
   json["trusted"] = s.reasons.empty();
   json["reasons"] = s.reasons;
   json["parameters"] = Json::object();
@@ -75,17 +90,17 @@ Json report(const ProfileJob& job, const ProfileSummary& s) {
 
 std::string edges_csv(const ProfileSummary& s) {
   std::string text = "row";
-  for (std::size_t e = 0; e < s.fit.edges.size(); ++e)
+  for (std::size_t e = 0; e < s.fit.edges().size(); ++e)
     text += fmt::format(",edge_{0}_nm,edge_{0}_error_nm,edge_{0}_threshold_nm", e + 1);
   text += "\n";
-  const std::size_t rows = s.fit.edges.front().rows_nm.size();
+  const std::size_t rows = s.fit.edges().front().rows_nm.size();
   for (std::size_t r = 0; r < rows; ++r) {
     text += std::to_string(r);
-    for (std::size_t e = 0; e < s.fit.edges.size(); ++e) {
+    for (std::size_t e = 0; e < s.fit.edges().size(); ++e) {
       const auto& threshold = s.threshold.places_nm[e];
-      const double error = s.fit.edges[e].errors_nm[r];  // none: the row does not show the edge
+      const double error = s.fit.edges()[e].errors_nm[r];  // none: the row does not show the edge
       text += std::isfinite(error)
-                  ? fmt::format(",{:.4f},{:.4f},", s.fit.edges[e].rows_nm[r], error)
+                  ? fmt::format(",{:.4f},{:.4f},", s.fit.edges()[e].rows_nm[r], error)
                   : ",,,";
       // Directions about a hole are others there.
       if (!s.hole && r < threshold.size() && std::isfinite(threshold[r]))
@@ -104,8 +119,8 @@ const char* wall_name(const ProfileJob& job, const MeanProfile& m) {
 
 std::string profiles_csv(const ProfileJob& job, const ProfileSummary& s) {
   std::string text = "wall,u_nm,measured,standard_error,fitted\n";
-  for (std::size_t p = 0; p < s.fit.profiles.size(); ++p) {
-    const MeanProfile& m = s.fit.profiles[p];
+  for (std::size_t p = 0; p < s.fit.sights.front().profiles.size(); ++p) {
+    const MeanProfile& m = s.fit.sights.front().profiles[p];
     for (std::size_t i = 0; i < m.u_nm.size(); ++i)
       text += fmt::format("{},{:.4f},{:.6g},{:.6g},{:.6g}\n", wall_name(job, m), m.u_nm[i],
                           m.measured[i], m.standard_error[i], m.fitted[i]);
@@ -138,7 +153,7 @@ io::PlotPanel image_panel(const ProfileSummary& s, const PlacedImage& image) {
   picture.origin_x = image.x_nm(0), picture.origin_y = image.y_nm(0);
   picture.label = "signal";
   panel.image = std::move(picture);
-  for (const FittedEdge& e : s.fit.edges) {
+  for (const FittedEdge& e : s.fit.edges()) {
     io::PlotSeries line;
     for (std::size_t r = 0; r < e.rows_nm.size(); ++r) {
       const double at = e.rows_nm[r];
@@ -158,15 +173,18 @@ io::PlotPanel image_panel(const ProfileSummary& s, const PlacedImage& image) {
   return panel;
 }
 
-io::PlotPanel profile_panel(const ProfileJob& job, const ProfileSummary& s) {
+io::PlotPanel profile_panel(const ProfileJob& job, const ProfileSummary& s, std::size_t sight) {
   io::PlotPanel panel;
-  panel.title = "mean profile, measured and fitted";
+  panel.title = sight == 0 ? "mean profile, measured and fitted"
+                           : fmt::format("mean profile of view {}, tilted by {:.2f}°", sight + 1,
+                                         s.fit.sights[sight].tilt_deg.value);
+  const std::vector<MeanProfile>& profiles = s.fit.sights[sight].profiles;
   panel.x.label = "distance from the middle of the wall, material to the right (nm)";
   panel.y.label = "signal";
-  for (std::size_t p = 0; p < s.fit.profiles.size(); ++p) {
-    const MeanProfile& m = s.fit.profiles[p];
+  for (std::size_t p = 0; p < profiles.size(); ++p) {
+    const MeanProfile& m = profiles[p];
     const std::string wall =
-        s.fit.profiles.size() == 1 ? "" : fmt::format(" ({} walls)", wall_name(job, m));
+        profiles.size() == 1 ? "" : fmt::format(" ({} walls)", wall_name(job, m));
     panel.series.push_back({"measured" + wall, m.u_nm, m.measured, {}, io::PlotStyle::points});
     panel.series.push_back({"fitted" + wall, m.u_nm, m.fitted, {}});
   }
@@ -218,6 +236,27 @@ io::PlotPanel spectrum_panel(const ProfileSummary& s, double distance_nm) {
   return panel;
 }
 
+std::vector<std::filesystem::path> inputs_of(const ProfileJob& job) {
+  std::vector<std::filesystem::path> files{job.sem.file};
+  for (const SemInput& view : job.views) files.push_back(view.file);
+  if (!job.scan_file.empty()) files.push_back(job.scan_file);
+  return files;
+}
+
+Image surface_image(const ProfileSummary& s, const std::map<std::string, std::string>& made) {
+  Image image;
+  image.placement() = s.surface.placement();
+  image.metadata = made;
+  const auto add = [&](const char* what, const Grid<double>& values) {
+    Channel channel{what, "nm", Grid<float>(values.width(), values.height())};
+    std::ranges::copy(values.data(), channel.values.data().begin());
+    image.channels.push_back(std::move(channel));
+  };
+  add("z_nm", s.surface.z_nm);
+  add("deviation_nm", s.deviation_nm);
+  return image;
+}
+
 }  // namespace
 
 std::vector<std::filesystem::path> write_profile(const ProfileJob& job, const ProfileSummary& s,
@@ -229,7 +268,7 @@ std::vector<std::filesystem::path> write_profile(const ProfileJob& job, const Pr
     return written.back();
   };
   const double distance_nm = s.hole ? 2 * std::numbers::pi * s.hole->radius_nm /
-                                          static_cast<double>(s.fit.edges.front().rows_nm.size())
+                                          static_cast<double>(s.fit.edges().front().rows_nm.size())
                                     : image.pitch_y_nm;
   // Of an earlier run; what says whether a result is to be trusted comes last.
   for (const char* file : {"profile.json", "spectrum.csv", "panel.png"})
@@ -238,17 +277,23 @@ std::vector<std::filesystem::path> write_profile(const ProfileJob& job, const Pr
   io::write_text(path("profiles.csv"), profiles_csv(job, s));
   const bool spectrum = !s.fit.edge_spectrum.density_nm3.empty();
   if (spectrum) io::write_text(path("spectrum.csv"), spectrum_csv(s, distance_nm));
+  const std::map<std::string, std::string> made =
+      step_record("profile", record_of(job), inputs_of(job));
+  io::write_height_field(path("surface.gsf"), s.surface, made);
+  io::write_image(path("surface.vti"), surface_image(s, made));
   const auto finish = [&] {
     io::write_text(path("profile.json"), report(job, s).dump(2) + "\n");
     return written;
   };
   if (!job.picture) return finish();
   io::Plot plot;
-  plot.panels = {image_panel(s, image), profile_panel(job, s), shape_panel(job, s)};
+  plot.panels = {image_panel(s, image), profile_panel(job, s, 0), shape_panel(job, s)};
+  for (std::size_t k = 1; k < s.fit.sights.size(); ++k)
+    plot.panels.push_back(profile_panel(job, s, k));
   if (spectrum) plot.panels.push_back(spectrum_panel(s, distance_nm));
   plot.columns = 2;
   plot.width_px = 1800;
-  plot.metadata = step_record("profile", record_of(job), {job.sem.file});
+  plot.metadata = made;
   io::write_plot(path("panel.png"), plot);
   return finish();
 }

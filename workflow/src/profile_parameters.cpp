@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/ranges.h>
+
 #include "common_parameters.h"
 #include "surf/core/some_parameters.h"
 #include "surf/mc/request/simulation_request.h"
@@ -38,9 +40,10 @@ void describe(ParameterVisitor& visit, ProfileJob& job) {
   visit(job.along_x, {.name = "profile.along_x", .help = "Lines run along x, not along y"});
   std::optional<double> height = job.height_nm > 0 ? std::optional(job.height_nm) : std::nullopt;
   visit(height, {.name = "profile.height",
-                 .help = "Height of the walls, which no upright view shows",
+                 .help = "Height of the walls, which no upright view shows; with tilted views a guess",
                  .unit = Unit::nm,
-                 .limits = within(1, 100'000)});
+                 .limits = within(1, 100'000),
+                 .otherwise = "as the scan shows"});
   job.height_nm = height.value_or(0);
   visit(job.height_error_nm, {.name = "profile.height_error",
                               .help = "Standard error of this height",
@@ -76,7 +79,19 @@ void describe(ParameterVisitor& visit, ProfileJob& job) {
                         .limits = within(0.05, 0.95)});
   describe_beam(visit, job);
   visit(job.signal,
-        {.name = "profile.signal", .help = "What the image shows: SE or BSE", .form = "SE|BSE"});
+        {.name = "profile.signal",
+         .help = "What the image shows: SE, BSE, a quadrant BSE-right, BSE-top, BSE-left, "
+                 "BSE-bottom, or a detector as 'semsurf simulate --detector' takes it",
+         .form = "SIGNAL"});
+  visit.form(
+      {.name = "profile.view_signal",
+       .help = "What each image shows, or each after the first",
+       .otherwise = "as the first",
+       .form = "SIGNAL"},
+      [&] { return fmt::format("{}", fmt::join(job.view_signals, " ")); },
+      [&](std::string_view text, const std::string&) { job.view_signals.emplace_back(text); },
+      FieldKind::list);
+  describe(visit, job.view_settings);
   visit(job.electrons, {.name = "profile.electrons",
                         .help = "Primaries per place of simulated profiles",
                         .limits = within(10, 1'000'000)});

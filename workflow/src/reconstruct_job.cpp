@@ -379,7 +379,7 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
   std::vector<SemView> views;
   if (!job.views.empty()) {
     std::optional<Reconstruction> coarse;
-    if (afm && !all_known(job.view_settings))
+    if (afm && !all_known(job.known_views))
       coarse = reconstruct(&*afm, &*sem, coarse_options(job, s, s.gains_tied));
     views = prepare_views(job, s, *sem, coarse ? &coarse->surface : nullptr, told);
     if (const auto strange = std::ranges::find(s.views, false, &PreparedView::explained);

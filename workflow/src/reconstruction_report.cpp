@@ -280,6 +280,7 @@ ReconstructJob parameters_of(const ReconstructJob& job) {
     out.sem->reading = job.sem->reading;
   }
   out.view_settings = job.view_settings;
+  out.known_views = job.known_views;
   out.model = job.model;
   out.pose = job.pose;
   out.calibration = job.calibration;
@@ -311,7 +312,7 @@ ReconstructJob parameters_used(const ReconstructJob& job, const ReconstructSumma
     used.calibration = {sem->gains, sem->offset};
     used.sem_noise = sem->noise;
   }
-  ViewSettings& views = used.view_settings;
+  KnownViews& views = used.known_views;
   views.gains.clear(), views.noises.clear(), views.places_nm.clear();
   for (const PreparedView& view : s.views) {
     views.gains.push_back(view.gains);
@@ -348,7 +349,7 @@ std::vector<std::string> repeating_command(const ReconstructJob& job, const Reco
     for (std::size_t k = 0; k < job.views.size(); ++k)
       add("view-model", (job.folder / view_model_name(s, k)).string());
     usual.sem.emplace();
-    used.view_settings.models.clear();
+    used.known_views.models.clear();
     used.view_settings.energies_ev.clear();
   }
   const OptionNames names{{"level.method", "--level-method"},

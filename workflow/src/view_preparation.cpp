@@ -22,18 +22,6 @@ std::string count_of(std::size_t views) {
   return views == 1 ? "1 further SEM image" : fmt::format("{} further SEM images", views);
 }
 
-template <class T>
-std::vector<T> for_each_view(const std::vector<T>& list, std::size_t views, const T& otherwise,
-                             const std::string& subject) {
-  if (list.empty()) return std::vector<T>(views, otherwise);
-  if (list.size() == views) return list;
-  if (list.size() == views + 1) return {list.begin() + 1, list.end()};
-  throw UsageError(subject,
-                   fmt::format("{} values are given, and there {} {}", list.size(),
-                               views == 1 ? "is" : "are", count_of(views)),
-                   "Give one for each SEM image in turn, or one for each after the first");
-}
-
 /// The image that the surface would give, over all that a tilted beam sees of it.
 PlacedImage predicted(const HeightField& surface, const PlacedImage& view, const ViewPose& pose,
                       const ImageModel& model, const std::vector<double>& gains, int threads) {
@@ -81,33 +69,17 @@ ImageShift nearest_of_best(const std::vector<ImageShift>& shifts, Point2 expecte
 
 }  // namespace
 
-std::vector<double> of_each_view(const std::vector<double>& list, std::size_t views,
-                                 double otherwise, const std::string& subject) {
-  return for_each_view(list, views, otherwise, subject);
-}
-
-bool all_known(const ViewSettings& s) {
+bool all_known(const KnownViews& s) {
   return !s.gains.empty() && !s.noises.empty() && !s.places_nm.empty();
 }
 
 void check_views(const ReconstructJob& job) {
-  const ViewSettings& v = job.view_settings;
+  const KnownViews& v = job.known_views;
   const std::size_t views = job.views.size();
   if (views > 0 && !job.sem)
     throw UsageError("`reconstruction.sem`", "further SEM images need a first one", "Give one");
-  const std::vector<double> tilts = of_each_view(v.tilts_deg, views, 0, "`beam.tilt`");
-  of_each_view(v.azimuths_deg, views, 0, "`beam.azimuth`");
-  of_each_view(v.energies_ev, views, 0, "`reconstruction.view_energy`");
+  angles_of(job.view_settings, views, 0);
   for_each_view(v.models, views, std::filesystem::path(), "`reconstruction.view_model`");
-  if (v.tilts_deg.size() == views + 1 && v.tilts_deg.front() != 0)
-    throw UsageError("`beam.tilt`",
-                     fmt::format("the first SEM image's is {:g} degrees", v.tilts_deg.front()),
-                     "Give the image that looks straight down first: the surface is in its frame");
-  for (const double tilt : tilts)
-    if (!(tilt >= 0 && tilt <= largest_view_tilt_deg))
-      throw UsageError("`beam.tilt`", fmt::format("{:g} degrees are out of range", tilt),
-                       fmt::format("Give 0 to {:g}deg; `beam.azimuth` says to which side",
-                                   largest_view_tilt_deg));
   const auto known = [&](std::size_t count, const char* subject) {
     if (count != 0 && count != views)
       throw UsageError(subject,
@@ -131,32 +103,28 @@ std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary
   const std::size_t views = job.views.size();
   if (views == 0) return out;
   begin(told, "views");
-  const ViewSettings& settings = job.view_settings;
-  const std::vector<double> tilts = of_each_view(settings.tilts_deg, views, 0, "`beam.tilt`"),
-                            azimuths =
-                                of_each_view(settings.azimuths_deg, views, 0, "`beam.azimuth`"),
-                            energies = of_each_view(settings.energies_ev, views, 0,
-                                                    "`reconstruction.view_energy`");
+  const KnownViews& settings = job.known_views;
+  const std::vector<ViewAngles> angles = angles_of(job.view_settings, views, 0);
   const auto models = for_each_view(settings.models, views, std::filesystem::path(),
                                     "`reconstruction.view_model`");
   const int threads = job.options.threads;
   for (std::size_t k = 0; k < views; ++k) {
     PreparedView found;
-    found.tilt_deg = tilts[k], found.azimuth_deg = azimuths[k];
+    found.tilt_deg = angles[k].tilt_deg, found.azimuth_deg = angles[k].azimuth_deg;
     PlacedImage image = job.views[k].image;
     found.saturated = leave_out_saturated(image);
     ModelRequest request = job.model;
     if (request.folder.empty()) request.folder = job.folder;
-    if (energies[k] > 0 && energies[k] != request.energy_ev) {
-      request.energy_ev = energies[k];
+    if (const double energy = angles[k].energy_ev; energy > 0 && energy != request.energy_ev) {
+      request.energy_ev = energy;
       request.file.clear();
     }
     if (!models[k].empty()) request.file = models[k];
     found.model = model_of(request, image, told);
     const ImageModel& model = *found.model.model;
     SemView view;
-    view.pose = {tilts[k], azimuths[k], {}};
-    view.tilt_error_deg = settings.tilt_error_deg;
+    view.pose = {angles[k].tilt_deg, angles[k].azimuth_deg, {}};
+    view.tilt_error_deg = job.view_settings.tilt_error_deg;
     std::vector<double> gains = sem.gains;
     gains.resize(model.channels().size(), 0.0);
 

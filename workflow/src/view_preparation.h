@@ -10,13 +10,8 @@ namespace surf::workflow {
 /// More further SEM images than anybody has.
 inline constexpr std::size_t most_views = 15;
 
-/// How many SEM images a list of settings is for, and what it says of each further one.
-/// `otherwise`: where the list is empty. Throws UsageError naming `subject` for other lengths.
-std::vector<double> of_each_view(const std::vector<double>& list, std::size_t views,
-                                 double otherwise, const std::string& subject);
-
 /// Whether places, gains and noise are given, so that no surface is needed to find them.
-bool all_known(const ViewSettings& settings);
+bool all_known(const KnownViews& known);
 
 /// Before any work. Throws UsageError.
 void check_views(const ReconstructJob& job);

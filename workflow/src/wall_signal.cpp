@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "wall_signal.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +10,7 @@
 #include "surf/mc/geometry/field_in_reach.h"
 #include "surf/mc/physics/medium.h"
 #include "surf/mc/simulate.h"
+#include "surf/reconstruction/view.h"
 
 namespace surf::workflow {
 namespace {
@@ -17,11 +20,24 @@ constexpr double heights_around = 4, least_around_nm = 200;
 
 }  // namespace
 
+std::vector<mc::Detector> detectors_of(const std::string& signal, const std::string& subject) {
+  if (signal == "SE" || signal == "BSE") return {};
+  for (const mc::Detector& quadrant : mc::parse_detectors("quadrants", subject))
+    if (quadrant.name == signal) return {quadrant};
+  const std::vector<mc::Detector> own = mc::parse_detectors(signal, subject);
+  if (own.size() != 1)
+    throw UsageError(subject, fmt::format("'{}' is not one detector", signal),
+                     "Give SE, BSE, BSE-right, BSE-top, BSE-left, BSE-bottom or one detector as "
+                     "'semsurf simulate --detector' takes it");
+  return own;
+}
+
 WallSignal simulate_wall(const FeatureShape& shape, const WallSimulation& how,
                          mc::LibrarySource& libraries, const Watch& watch) {
   mc::Beam beam;
   beam.energy_ev = how.energy_ev;
   beam.spot_nm = how.spot_nm;
+  beam.tilt_deg = how.tilt_deg, beam.azimuth_deg = how.azimuth_deg;
   const mc::Medium medium = mc::make_medium(how.material, how.physics);
   const double last_u = how.first_u_nm + how.step_nm * (how.places - 1),
                scanned = std::max(std::abs(how.first_u_nm), std::abs(last_u)),
@@ -35,23 +51,30 @@ WallSignal simulate_wall(const FeatureShape& shape, const WallSimulation& how,
   scan.height = 1;
   scan.pixel_x_nm = scan.pixel_y_nm = how.step_nm;
   // Seen from the right wall's middle the material of a line lies at smaller x.
-  const bool line = shape.kind == FeatureKind::line;
-  const double wall = shape.kind == FeatureKind::edge ? 0 : 0.5 * shape.width_nm,
-               middle_u = 0.5 * (how.first_u_nm + last_u);
-  scan.center_x_nm = line ? wall - middle_u : wall + middle_u;
+  const bool smaller = (shape.kind == FeatureKind::line) != how.left;
+  const double half = shape.kind == FeatureKind::edge ? 0 : 0.5 * shape.width_nm,
+               wall = how.left ? -half : half, middle_u = 0.5 * (how.first_u_nm + last_u);
+  const BeamAxes axes = beam_axes(how.tilt_deg, how.azimuth_deg);
+  const Vec3 middle = Vec3{wall, 0, 0.5 * shape.wall.height_nm} +
+                      axes.across * (smaller ? -middle_u : middle_u);
+  scan.center_x_nm = middle.x, scan.center_y_nm = middle.y;
+  if (how.tilt_deg > 0) scan.center_z_nm = middle.z;
   mc::SimulationOptions options;
   options.budget = mc::ElectronsPerPixel{how.electrons};
   options.seed = how.seed;
   options.threads = how.threads;
+  options.detectors = mc::default_detectors();
+  for (const mc::Detector& own : detectors_of(how.signal, "signal"))
+    options.detectors.push_back(own);
   options.method = mc::can_replay(medium) ? mc::Method::replay : mc::Method::direct;
   const mc::SimulationResult result =
       mc::simulate(mc::Scene(specimen, beam, scan, how.physics), options,
                    {.watch = watch, .libraries = &libraries});
   if (!result.complete) throw Interrupted();
-  const std::size_t detector = how.signal == "BSE" ? 1 : 0;  // of the default ones
+  const std::size_t detector = how.signal == "SE" ? 0 : how.signal == "BSE" ? 1 : 2;
   WallSignal out;
   for (int k = 0; k < how.places; ++k) {
-    const auto yield = result.yield(detector, line ? how.places - 1 - k : k, 0);
+    const auto yield = result.yield(detector, smaller ? how.places - 1 - k : k, 0);
     out.mean.push_back(yield.mean);
     out.standard_error.push_back(yield.standard_error);
   }

@@ -9,6 +9,7 @@
 #include "surf/mc/cascades/library_source.h"
 #include "surf/mc/physics/material.h"
 #include "surf/mc/physics/physics.h"
+#include "surf/mc/transport/detector.h"
 #include "surf/profile/feature_shape.h"
 
 namespace surf::workflow {
@@ -18,7 +19,9 @@ struct WallSimulation {
   mc::Material material;
   mc::Physics physics;
   double energy_ev = 1000, spot_nm = 0;
-  std::string signal = "SE";  ///< SE or BSE
+  double tilt_deg = 0, azimuth_deg = 0;  ///< of the beam
+  std::string signal = "SE";             ///< see `detectors_of`
+  bool left = false;  ///< the wall at the left of the feature's middle, not that at its right
   double first_u_nm = -100, step_nm = 1;
   int places = 200;
   std::int64_t electrons = 1000;  ///< per place
@@ -31,8 +34,13 @@ struct WallSignal {
   std::vector<double> mean, standard_error;
 };
 
-/// The signal across the right wall of a feature; of a hole, along a radius. Throws Interrupted,
-/// and InvalidInput for shapes that `feature_mesh` refuses.
+/// What a simulation counts of a signal besides SE and BSE: nothing for these two; else one of the
+/// quadrants or a detector in words (mc::parse_detectors). Throws UsageError naming `subject`.
+std::vector<mc::Detector> detectors_of(const std::string& signal, const std::string& subject);
+
+/// The signal across a wall of a feature, along the image's x in the plane perpendicular to the
+/// beam, from the middle of the wall's flank; of a hole, along a radius. Throws Interrupted, and
+/// InvalidInput for shapes that `feature_mesh` refuses.
 WallSignal simulate_wall(const FeatureShape& shape, const WallSimulation& simulation,
                          mc::LibrarySource& libraries, const Watch& watch = {});
 

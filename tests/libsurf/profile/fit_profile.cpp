@@ -89,14 +89,14 @@ TEST(FitProfile, FindsShapeWidthAndRoughnessWithinItsErrors) {
     const Made made = lines(seed, 1.2, 12);
     const ProfileFit f = fit(made.image, usual());
     EXPECT_TRUE(f.converged);
-    ASSERT_EQ(f.edges.size(), 4u);
+    ASSERT_EQ(f.edges().size(), 4u);
     const Measured width = f.left[profile_width], angle = f.left[profile_angle];
     width2 += std::pow(width.value - made.width_nm, 2) / trials;
     width_in += std::abs(width.value - made.width_nm) <= 2 * width.standard_error + 0.02;
     angle_in += std::abs(angle.value - truth[profile_angle]) <= 2 * angle.standard_error + 0.02;
     sigma += f.edge_roughness.sigma_nm / trials;
     EXPECT_LT(width.standard_error, 0.8);  // where the wall is depends on its corners
-    EXPECT_NEAR(f.gain, 100, 4);
+    EXPECT_NEAR(f.sights.front().gain, 100, 4);
   }
   EXPECT_LT(std::sqrt(width2), 0.6);
   EXPECT_GE(width_in, 6);
@@ -112,7 +112,7 @@ TEST(FitProfile, LeftAndRightWallsMayDiffer) {
   for (const auto& wall : {f.left, f.right})
     EXPECT_NEAR(wall[profile_angle].value, truth[profile_angle],
                 std::min(1.0, 3 * wall[profile_angle].standard_error));
-  EXPECT_EQ(f.profiles.size(), 2u);
+  EXPECT_EQ(f.sights.front().profiles.size(), 2u);
 }
 
 TEST(FitProfile, ChanceInTheLibraryIsNoInformation) {
@@ -155,9 +155,9 @@ TEST(FitProfile, RowsThatDoNotShowTheWallAreLeftOut) {
       made.image.valid(x, y) = y < 42 && x == 20;
   const ProfileLibrary known = library();
   const ProfileFit part = fit_profile(profile_data(made.image, edges), known, usual());
-  EXPECT_TRUE(std::isnan(part.edges[0].errors_nm[44]));
-  EXPECT_TRUE(std::isnan(part.edges[1].errors_nm[41]));
-  EXPECT_LT(part.edges[0].errors_nm[30], 3);
+  EXPECT_TRUE(std::isnan(part.edges()[0].errors_nm[44]));
+  EXPECT_TRUE(std::isnan(part.edges()[1].errors_nm[41]));
+  EXPECT_LT(part.edges()[0].errors_nm[30], 3);
   EXPECT_NEAR(part.left[profile_width].value, whole.left[profile_width].value, 0.5);
   EXPECT_NEAR(part.edge_roughness.sigma_nm, whole.edge_roughness.sigma_nm, 0.3);
 }
@@ -180,7 +180,7 @@ TEST(FitProfile, AWidthBeyondTheLibraryIsSaid) {
 
 TEST(FitProfile, AWrongModelIsToldByWhatItIsOffBy) {
   Made made = lines(4, 0, 8);
-  const double right = fit(made.image, usual()).discrepancy_share;
+  const double right = fit(made.image, usual()).sights.front().discrepancy_share;
   ProfileFitOptions o = usual();
   o.model_error = 0.05;
   for (int y = 0; y < made.image.values.height(); ++y)
@@ -188,7 +188,7 @@ TEST(FitProfile, AWrongModelIsToldByWhatItIsOffBy) {
       const double at = 4 * x, near = std::min(std::abs(at - 65), std::abs(at - 117));
       made.image.values(x, y) += 40 * std::exp(-0.5 * near * near / 9);
     }
-  EXPECT_GT(fit(made.image, o).discrepancy_share, 5 * right + 0.01);
+  EXPECT_GT(fit(made.image, o).sights.front().discrepancy_share, 5 * right + 0.01);
 }
 
 TEST(FitProfile, RefusesAnEdgeWithoutPixels) {

@@ -33,6 +33,17 @@ ProfileData profile_data(const PlacedImage& image, const std::vector<ImageEdge>&
 /// distance.
 ProfileData profile_data(const PlacedImage& image, const Circle& hole, double to_nm);
 
+/// An image that is fitted, and what simulated signals of its walls are like.
+struct ProfileSight {
+  ProfileData data;
+  /// Of walls with the ground at their left, and at their right; with one box. They must outlive
+  /// the fit.
+  const ProfileLibrary *left = nullptr, *right = nullptr;
+  double tilt_deg = 0;        ///< of the beam, which the libraries know
+  double azimuth_deg = 0;     ///< of the beam, from x; lines run along y
+  double tilt_error_deg = 0;  ///< standard error of the tilt, which is fitted; 0: it is right
+};
+
 struct ProfileFitOptions {
   bool walls_alike = true;  ///< left and right walls have one shape
   /// Priors of the numbers: normal, with these deviations; 0: held at the mean, infinite: none. The
@@ -51,6 +62,7 @@ struct Measured {
 struct FittedEdge {
   ImageEdge edge;
   Measured place_nm;              ///< mean of its rows
+  std::vector<double> smooth_nm;  ///< place of each row, as far as it stands out of the noise
   std::vector<double> rows_nm;    ///< place of each row
   std::vector<double> errors_nm;  ///< their standard errors
 };
@@ -61,27 +73,38 @@ struct MeanProfile {
   std::vector<double> u_nm, measured, standard_error, fitted;
 };
 
-struct ProfileFit {
+/// What is fitted of an image, and how it agrees.
+struct SightFit {
   std::vector<FittedEdge> edges;
+  double gain = 1, offset = 0;
+  double blur_nm = 0;  ///< what rows are displaced by that alignment did not follow
+  Measured tilt_deg;
+  std::vector<MeanProfile> profiles;  ///< of left and right walls
+  /// What the simulation is off by, root mean square over the signal's contrast.
+  double discrepancy_share = 0;
+};
+
+struct ProfileFit {
+  std::vector<SightFit> sights;  ///< of each image; the first's edges and roughness are below
   /// Of the walls with the ground at their left (`left`) and at their right; the same if walls are
   /// alike, or are seen from one side only.
   /// The order of ProfileNumbers; a width's standard error is that of the mean width.
   std::array<Measured, profile_numbers> left, right;
   std::vector<Measured> widths_nm;  ///< of each feature with two edges, or a hole's diameter
-  double gain = 1, offset = 0;
-  double blur_nm = 0;  ///< what rows are displaced by that alignment did not follow
   EdgeRoughness edge_roughness, width_roughness;
   EdgeSpectrum edge_spectrum, width_spectrum;
-  std::vector<MeanProfile> profiles;  ///< of left and right walls
-  /// What the simulation is off by, root mean square over the signal's contrast.
-  double discrepancy_share = 0;
   bool converged = false;
   bool at_border = false;  ///< width or a number without a prior is at the border of the box
+
+  const std::vector<FittedEdge>& edges() const { return sights.front().edges; }
 };
 
-/// Fits shape, gain, offset and the place of each edge in each row. Places of rows are smoothed by
+/// Fits one shape to all images, and of each gain, offset, tilt and the place of each edge in each
+/// row. Images need not show the same features. Places of rows are smoothed by
 /// the roughness that they show, so that noise does not align itself; what this leaves blurs the
 /// model. Throws InvalidInput for data without samples at an edge, Interrupted.
+ProfileFit fit_profile(const std::vector<ProfileSight>& sights, const ProfileFitOptions& options);
+/// The same for an image that is seen from above.
 ProfileFit fit_profile(const ProfileData& data, const ProfileLibrary& library,
                        const ProfileFitOptions& options);
 

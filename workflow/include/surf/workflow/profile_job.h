@@ -13,6 +13,7 @@
 #include "surf/profile/fit_profile.h"
 #include "surf/workflow/register_job.h"
 #include "surf/workflow/reporter.h"
+#include "surf/workflow/view_settings.h"
 
 namespace surf::workflow {
 
@@ -20,10 +21,16 @@ namespace surf::workflow {
 /// Vladar 1999, doi:10.1117/12.350841; Villarrubia et al. 2004, doi:10.1117/12.535912).
 struct ProfileJob {
   SemInput sem;
+  std::vector<SemInput> views;  ///< further images of such features, from other sides
+  ViewSettings view_settings;
+  std::vector<std::string> view_signals;  ///< of each, as `signal`; none: the first one's
+  std::optional<HeightField> scan;        ///< an AFM scan that shows how high walls are
+  std::filesystem::path scan_file;
   FeatureKind kind = FeatureKind::line;
   bool along_x = false;            ///< lines run along x, not y
-  double height_nm = 0;            ///< of the walls; required, because no upright view shows it
-  double height_error_nm = 0;      ///< its standard error
+  /// Of the walls, and its standard error; 0: by the scan. Required without one, because no
+  /// upright view shows it: with tilted views a guess and a wide error do.
+  double height_nm = 0, height_error_nm = 0;
   std::optional<double> pitch_nm;  ///< 0: there is one; absent: as walls repeat in the image
   double angle_deg = 87, angle_range_deg = 7;    ///< what is simulated to begin with
   double top_radius_nm = 4, foot_radius_nm = 4;  ///< usual radii of corners, as far off as large
@@ -32,7 +39,7 @@ struct ProfileJob {
   mc::Material material;
   mc::Physics physics;
   double energy_ev = 1000, spot_nm = 0;
-  std::string signal = "SE";  ///< what the image shows: SE or BSE
+  std::string signal = "SE";  ///< what the image shows: SE, BSE or a detector, see `detectors_of`
   /// Primaries per simulated place of shapes, which tell how signals differ, and of the middle one,
   /// which tells the level of all.
   std::int64_t electrons = 500, middle_electrons = 20'000;
@@ -54,16 +61,19 @@ struct ProfileSummary {
   std::optional<Circle> hole;
   double pitch_nm = 0;                        ///< of the simulated features; 0: one
   std::optional<Measured> measured_pitch_nm;  ///< mean distance of features in the image
+  std::optional<Measured> scan_height_nm;     ///< by the scan
   ProfileFit fit;
-  double discrepancy_share = 0;      ///< what the simulation is off by, over the contrast
+  HeightField surface;          ///< of that shape, with the edges of each row, on the image's pixels
+  Grid<double> deviation_nm;    ///< standard deviation of its heights
+  double discrepancy_share = 0;      ///< what the simulation is off by, over the contrast; the most
   std::int64_t simulated = 0;        ///< profiles
   std::vector<std::string> reasons;  ///< why the result is not to be trusted; none: it is
   std::vector<std::filesystem::path> written;
 };
 
 /// Finds the edges, simulates profiles of shapes around a first guess, fits shape and edges, and
-/// does so again about what was found. Writes profile.json, edges.csv, profiles.csv, spectrum.csv
-/// and panel.png to the folder. Throws UsageError, InvalidInput, FileError, Interrupted.
+/// does so again about what was found. Writes profile.json, edges.csv, profiles.csv, spectrum.csv,
+/// surface.gsf, surface.vti and panel.png to the folder. Throws UsageError, InvalidInput, FileError, Interrupted.
 ProfileSummary run(const ProfileJob& job, const Reporter& reporter = {});
 
 }  // namespace surf::workflow

@@ -11,6 +11,7 @@
 #include "surf/reconstruction/tilt_by_sem.h"
 #include "surf/sem/calibration.h"
 #include "surf/workflow/register_job.h"
+#include "surf/workflow/view_settings.h"
 
 namespace surf::workflow {
 
@@ -20,16 +21,10 @@ struct GivenCalibration {
   double offset = 0;
 };
 
-/// What further SEM images of the same place, `ReconstructJob::views`, are of. Lists have a value
-/// for each SEM image, the first included, or one for each further image.
-struct ViewSettings {
-  std::vector<double> tilts_deg;     ///< of the beam; the first image's is 0
-  std::vector<double> azimuths_deg;  ///< as in mc::Beam; none: 0
-  /// Of the beam, and models for it; none: as for the first image.
-  std::vector<double> energies_ev;
-  std::vector<std::filesystem::path> models;
-  double tilt_error_deg = 0.5;  ///< standard error of tilts along x and y
-  // What is known of further images beforehand, one for each; none: found.
+/// What is known of further SEM images beforehand.
+struct KnownViews {
+  std::vector<std::filesystem::path> models;  ///< as lists of ViewSettings; none: the first one's
+  // One for each further image; none: found.
   std::vector<std::vector<double>> gains;  ///< of each channel of the model, then the offset
   std::vector<SemNoise> noises;
   std::vector<Point2> places_nm;  ///< shift of each image's frame in the plane that it sees
@@ -42,6 +37,7 @@ struct ReconstructJob {
   std::optional<SemInput> sem;
   std::vector<SemInput> views;  ///< further SEM images of the same place, from other sides
   ViewSettings view_settings;
+  KnownViews known_views;
   ModelRequest model;
   PoseOptions pose;
   /// Required without a scan; absent: fitted with the scan.

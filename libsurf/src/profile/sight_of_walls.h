@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "surf/profile/fit_profile.h"
+
+namespace surf {
+
+/// Numbers of walls with the ground at their left, and at their right.
+using Walls = std::array<ProfileNumbers, 2>;
+
+/// The numbers of a fit in one vector: the walls', then those of each image.
+struct WallLayout {
+  std::vector<std::size_t> free;  ///< numbers of a wall that are fitted
+  int walls = 1;                  ///< 2: left and right walls have their own
+
+  int wall(int side) const { return (walls == 1 ? 0 : side) * static_cast<int>(free.size()); }
+  int all() const { return walls * static_cast<int>(free.size()); }
+};
+
+struct ProfileNormal {
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd pull;  ///< minus the gradient
+  double value = 0;      ///< the negative logarithm of the posterior
+};
+
+/// One image's part of a fit. Its own numbers follow each other in the fit's vector: gain, offset,
+/// a displacement of each edge, the simulation's error at some places, the tilt.
+class SightOfWalls {
+ public:
+  /// Throws InvalidInput for data without samples at an edge.
+  SightOfWalls(const ProfileSight& sight, const ProfileFitOptions& options);
+
+  int numbers() const { return tilt() + 1; }
+  int edge(int e) const { return 2 + e; }
+  int edges() const { return static_cast<int>(sight_->data.edges.size()); }
+
+  /// Gain, offset and the places of edges, by a search.
+  void begin(Walls& walls);
+  /// Adds this image's part to the normal equations; its own numbers begin at `first`. Those that
+  /// errors are taken from have slopes over some places.
+  void add_to(const WallLayout& layout, int first, const Walls& walls, bool of_errors,
+              ProfileNormal& out) const;
+  /// What the libraries' own errors move the fit by, as columns: all rows share them, and chance in
+  /// neighbouring places looks like a slope that tells where an edge is.
+  Eigen::MatrixXd pull_of_library(const WallLayout& layout, int first, const Walls& walls,
+                                  int all) const;
+  void move(const Eigen::VectorXd& step, int first);
+  /// The place of each edge in each row, by its pixels alone, then as far as it stands out of the
+  /// noise.
+  void place_rows(const Walls& walls);
+  void follow();
+  /// A line of squared residuals against the level.
+  void estimate_noise(const Walls& walls);
+
+  std::vector<double> means() const;
+  /// Pairs of edges of one feature.
+  template <class Pair>
+  void for_each_pair(const Pair& pair) const {
+    const auto& edges = sight_->data.edges;
+    for (std::size_t e = 0; e + 1 < edges.size(); ++e)
+      if (edges[e].feature == edges[e + 1].feature) pair(e, e + 1);
+  }
+  /// The mean width of what it shows; 0: it shows none.
+  double width_nm() const;
+  /// Lengths along x in the image, over those of the specimen.
+  double shortening() const { return shortening_; }
+  const std::vector<std::vector<double>>& raw() const { return raw_; }
+  const ProfileData& data() const { return sight_->data; }
+
+  SightFit result(const Walls& walls, const Eigen::MatrixXd& covariance, int first) const;
+
+ private:
+  int bumps() const { return static_cast<int>(bumps_.size()); }
+  int bump(int k) const { return edge(edges()) + k; }
+  int tilt() const { return bump(bumps()); }
+
+  static int side_of(const ImageEdge& e) { return e.material_right ? 0 : 1; }
+  static double sign_of(const ImageEdge& e) { return e.material_right ? 1 : -1; }
+  const ImageEdge& edge_of(const ProfileSample& s) const {
+    return sight_->data.edges[static_cast<std::size_t>(s.edge)];
+  }
+  const ProfileLibrary& library(int side) const {
+    return side == 0 ? *sight_->left : *sight_->right;
+  }
+  double u_of(const ProfileSample& s) const;
+  /// A wall's numbers as this image sees them: a tilt that is off looks like another angle, of the
+  /// other sign on the other side.
+  ProfileNumbers seen(const Walls& walls, int side) const;
+  double tilted_by(int side) const { return side == 0 ? -toward_x_ : toward_x_; }
+
+  struct Bump {
+    int first;
+    double weights[2];
+  };
+  Bump bump_at(double u) const;
+  double bump_deviation() const;
+  double signal(const ProfileLibrary::Value& v) const { return v.value + 0.5 * blur2_ * v.by_u2; }
+  double model(const ProfileLibrary::Value& v, double u) const;
+  double variance_of(double level) const;
+  /// All edges, away from their material.
+  void move_outward(double by_nm);
+  /// Sets gain and offset, and returns the mean squared residual.
+  double scale(const Walls& walls);
+  /// The signal's slope over some places: that between two alone is half chance, which would look
+  /// like something that tells where the edge is.
+  double slope_around(double u, int side, const ProfileNumbers& numbers) const;
+
+  /// Derivatives of the model at a sample, by number of the fit.
+  using Derivatives = std::vector<std::pair<int, double>>;
+  void derivatives(const WallLayout& layout, int first, const ProfileSample& s, double u,
+                   const ProfileLibrary::Value& v, double slope, Derivatives& d) const;
+  std::vector<MeanProfile> profiles(const Walls& walls) const;
+
+  const ProfileSight* sight_;
+  const ProfileFitOptions* options_;
+  double toward_x_ = 0, shortening_ = 1;  // cosine of the azimuth; see `shortening`
+  double gain_ = 1, offset_ = 0, blur2_ = 0, contrast_ = 1, tilt_off_deg_ = 0;
+  std::array<double, 2> noise_{};  // variance at level 0, and per level
+  double least_variance_ = 0;
+  std::vector<double> bumps_;
+  std::vector<std::vector<double>> places_, raw_, errors_;  // of each edge, by row
+};
+
+}  // namespace surf

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "profile_surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "surf/afm/step_height.h"
+#include "surf/core/error.h"
+
+namespace surf::workflow {
+namespace {
+
+using Wall = std::array<Measured, profile_numbers>;
+
+/// A wall's height at a distance from the middle of its flank.
+class WallHeight {
+ public:
+  explicit WallHeight(const Wall& w)
+      : profile_(wall_profile({w[profile_height].value, w[profile_angle].value,
+                               w[profile_top].value, w[profile_foot].value})),
+        top_(w[profile_height].value) {}
+
+  /// Undercut walls: what is seen from above.
+  double at(double u) const {
+    if (u <= profile_.front().x) return profile_.back().x < u ? top_ : 0;
+    double highest = u >= profile_.back().x ? top_ : 0;
+    for (std::size_t i = 1; i < profile_.size(); ++i) {
+      const Point2 a = profile_[i - 1], b = profile_[i];
+      if ((u - a.x) * (u - b.x) > 0 || a.x == b.x) continue;
+      highest = std::max(highest, a.y + (b.y - a.y) * (u - a.x) / (b.x - a.x));
+    }
+    return highest;
+  }
+
+ private:
+  std::vector<Point2> profile_;
+  double top_;
+};
+
+/// Heights of a wall whose numbers are moved by their standard errors, one by one.
+struct WallDoubt {
+  WallHeight middle;
+  std::vector<WallHeight> moved;
+
+  explicit WallDoubt(const Wall& wall) : middle(wall) {
+    for (const std::size_t k : {profile_height, profile_angle, profile_top, profile_foot}) {
+      if (!(wall[k].standard_error > 0)) continue;
+      for (const double by : {wall[k].standard_error, -wall[k].standard_error}) {
+        Wall other = wall;
+        other[k].value += by;
+        try {
+          moved.emplace_back(other);
+          break;
+        } catch (const InvalidInput&) {  // no wall has such corners: to the other side
+        }
+      }
+    }
+  }
+
+  double deviation(double u, double place_error) const {
+    constexpr double step = 0.25;
+    const double z = middle.at(u),
+                 slope = std::max(std::abs(middle.at(u + step) - z), std::abs(z - middle.at(u - step))) /
+                         step;
+    double variance = slope * place_error * slope * place_error;
+    for (const WallHeight& other : moved) variance += std::pow(other.at(u) - z, 2);
+    return std::sqrt(variance);
+  }
+};
+
+struct At {
+  std::size_t edge = 0;
+  double u = 0, place_error = 0;
+};
+
+/// The row's error of an edge: of its mean, and of how far the row follows.
+double place_error(const FittedEdge& e, std::size_t row) {
+  const double own = e.errors_nm[row];
+  return std::hypot(e.place_nm.standard_error, std::isfinite(own) ? own : 0);
+}
+
+/// The edge that lies nearest to a pixel.
+At nearest(const std::vector<FittedEdge>& edges, double x, std::size_t row) {
+  At best;
+  double least = HUGE_VAL;
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const double off = x - edges[e].smooth_nm[row];
+    if (std::abs(off) >= least) continue;
+    least = std::abs(off);
+    best = {e, edges[e].edge.material_right ? off : -off, place_error(edges[e], row)};
+  }
+  return best;
+}
+
+}  // namespace
+
+void add_surface(const ProfileJob&, const PlacedImage& image, ProfileSummary& s) {
+  const std::vector<FittedEdge>& edges = s.fit.edges();
+  const std::array<WallDoubt, 2> walls{WallDoubt(s.fit.left), WallDoubt(s.fit.right)};
+  const int w = image.values.width(), h = image.values.height();
+  s.surface = {image.placement(), Grid<double>(w, h)};
+  s.deviation_nm = Grid<double>(w, h);
+  const auto rows = static_cast<double>(edges.front().smooth_nm.size());
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x) {
+      double across = image.x_nm(x);
+      auto row = static_cast<std::size_t>(y);
+      if (s.hole) {
+        const double dx = image.x_nm(x) - s.hole->x_nm, dy = image.y_nm(y) - s.hole->y_nm;
+        across = std::hypot(dx, dy);
+        const double turn = std::atan2(dy, dx) / (2 * std::numbers::pi);
+        row = static_cast<std::size_t>(std::clamp((turn - std::floor(turn)) * rows, 0.0, rows - 1));
+      }
+      const At at = nearest(edges, across, row);
+      const WallDoubt& wall = walls[edges[at.edge].edge.material_right ? 0 : 1];
+      s.surface.z_nm(x, y) = wall.middle.at(at.u);
+      s.deviation_nm(x, y) = wall.deviation(at.u, at.place_error);
+    }
+}
+
+Measured wall_height(const HeightField& scan) {
+  constexpr int away = 2;  // samples, from what is between the levels
+  constexpr double level_share = 0.15;
+  std::vector<double> sorted;
+  for (std::size_t i = 0; i < scan.z_nm.size(); ++i)
+    if (scan.valid.includes(i)) sorted.push_back(scan.z_nm.data()[i]);
+  if (sorted.size() < 64) throw InvalidInput("AFM scan", "it has hardly any samples", "Give another");
+  std::ranges::sort(sorted);
+  const auto at = [&](double share) {
+    return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+  };
+  const double low = at(0.1), high = at(0.9), band = level_share * (high - low);
+  const auto near = [&](double level) {
+    Mask mask(scan.z_nm.width(), scan.z_nm.height());
+    for (int y = 0; y < mask.height(); ++y)
+      for (int x = 0; x < mask.width(); ++x) {
+        bool all = true;
+        for (int k = -away; k <= away && all; ++k) {
+          const int u = std::clamp(x + k, 0, mask.width() - 1),
+                    v = std::clamp(y + k, 0, mask.height() - 1);
+          all = scan.is_valid(u, y) && std::abs(scan.z_nm(u, y) - level) < band &&
+                scan.is_valid(x, v) && std::abs(scan.z_nm(x, v) - level) < band;
+        }
+        mask(x, y) = all;
+      }
+    return mask;
+  };
+  const StepHeight step = measure_step(scan, near(low), near(high));
+  return {step.height_nm, step.stderr_nm};
+}
+
+}  // namespace surf::workflow
