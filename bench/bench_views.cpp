@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far surfaces that are reconstructed from several SEM images are off, on lines 100 nm high
-// whose images the other tier of physics makes, and how long that takes:
-//   bench_views MODEL.json [CASES [FIRST [FOLDER]]]   with a folder, inputs and results go there
-// Lines of drawn width, wall angle, pitch and turn, pixels of 4 nm, 150 electrons per pixel; tilts
-// of 0 and 3 degrees to both sides, said to 0.05 degrees; a scan of 12 nm pitch with a tip of 15 nm.
+// How far surfaces of lines are off that come from one or more SEM images, with a scan and without,
+// whether their errors hold, and how long that takes. The images are by the other tier of physics:
+//   bench_views [CASES [FIRST [FOLDER]]]   with a folder, inputs and results go there
+//   bench_views --heights MODEL.json [CASES [FIRST [FOLDER]]]   the reconstruction of heights beside
+// Lines 100 nm high, of drawn width, wall angle and pitch, pixels of 4 nm, 150 electrons per pixel;
+// tilts of 0 and 3 degrees to both sides, said to 0.05 degrees; BSE by quadrants; a scan of 12 nm
+// pitch by a tip of 15 nm. Without a scan the height is said to be 100 +- 20 nm, as it is drawn.
+// Baselines: edges by thresholds with walls of that height; stereo.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -25,6 +29,7 @@
 #include "surf/mc/simulate.h"
 #include "surf/profile/feature_shape.h"
 #include "surf/workflow/libraries.h"
+#include "surf/workflow/profile_job.h"
 #include "surf/workflow/reconstruct_job.h"
 #include "surf/workflow/tip_job.h"
 
@@ -38,6 +43,7 @@ constexpr double gain = 900, offset = 120;
 
 struct Case {
   FeatureShape shape;
+  double said_nm = 100;  // the height, where nothing shows it
   std::uint64_t seed = 1;
 };
 
@@ -49,6 +55,7 @@ Case draw(int number) {
   c.shape.pitch_nm = within(120, 200);
   c.shape.width_nm = within(0.4, 0.6) * c.shape.pitch_nm;
   c.shape.wall = {100, within(84, 86), within(2, 5), within(2, 5)};
+  c.said_nm = within(80, 120);
   c.seed = 2000 + static_cast<std::uint64_t>(number);
   return c;
 }
@@ -66,8 +73,9 @@ double height_nm(const FeatureShape& f, double x) {
   return f.wall.height_nm;
 }
 
-PlacedImage image_of(const Case& c, double tilt, double azimuth_deg, std::uint64_t seed,
-                     mc::LibrarySource& libraries) {
+/// An image by SE, and by each quadrant.
+std::vector<PlacedImage> images_of(const Case& c, double tilt, double azimuth_deg,
+                                   std::uint64_t seed, mc::LibrarySource& libraries) {
   mc::Specimen specimen;
   specimen.materials = {io::find_material("Si", "bench")};
   specimen.bodies.push_back({"feature", feature_mesh(c.shape, 1500), 0});
@@ -83,19 +91,25 @@ PlacedImage image_of(const Case& c, double tilt, double azimuth_deg, std::uint64
   options.method = mc::Method::replay;
   options.seed = seed;
   options.least_cascades = 100'000;
+  const std::vector<mc::Detector> quadrants = mc::parse_detectors("quadrants", "bench");
+  options.detectors.insert(options.detectors.end(), quadrants.begin(), quadrants.end());
   mc::Physics physics;
   mc::parse_physics("inelastic=dielectric", physics);
   const mc::SimulationResult done = mc::simulate(mc::Scene(specimen, beam, scan, physics), options,
                                                  {.libraries = &libraries});
-  PlacedImage image;
-  image.pitch_x_nm = image.pitch_y_nm = pixel_nm;
-  image.origin_x_nm = 3 - 0.5 * (columns - 1) * pixel_nm;
-  image.origin_y_nm = -0.5 * (rows - 1) * pixel_nm;
-  image.values = Grid<double>(columns, rows);
-  for (int y = 0; y < rows; ++y)
-    for (int x = 0; x < columns; ++x)
-      image.values(x, y) = offset + gain * done.yield(0, x, y).mean;
-  return image;
+  std::vector<PlacedImage> images;
+  for (const std::size_t detector : {0, 2, 3, 4, 5}) {
+    PlacedImage image;
+    image.pitch_x_nm = image.pitch_y_nm = pixel_nm;
+    image.origin_x_nm = 3 - 0.5 * (columns - 1) * pixel_nm;
+    image.origin_y_nm = -0.5 * (rows - 1) * pixel_nm;
+    image.values = Grid<double>(columns, rows);
+    for (int y = 0; y < rows; ++y)
+      for (int x = 0; x < columns; ++x)
+        image.values(x, y) = offset + gain * done.yield(detector, x, y).mean;
+    images.push_back(std::move(image));
+  }
+  return images;
 }
 
 HeightField truth_of(const Case& c) {
@@ -139,26 +153,103 @@ void write(const std::filesystem::path& file, const PlacedImage& image) {
   io::write_image(file, out);
 }
 
-void judge(const char* what, const workflow::ReconstructJob& job) {
+/// Root mean square difference, the median taken off, and the share within two deviations.
+struct Off {
+  double rms_nm = 0, within = 0;
+};
+Off off(const HeightField& found, const Grid<double>& deviation_nm, const HeightField& truth) {
+  std::vector<double> d;
+  for (std::size_t i = 0; i < truth.z_nm.size(); ++i)
+    d.push_back(found.z_nm.data()[i] - truth.z_nm.data()[i]);
+  std::vector<double> sorted = d;
+  std::ranges::sort(sorted);
+  const double median = sorted[sorted.size() / 2];
+  Off out;
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    out.rms_nm += std::pow(d[i] - median, 2) / static_cast<double>(d.size());
+    if (!deviation_nm.empty())
+      out.within += (std::abs(d[i] - median) <= 2 * deviation_nm.data()[i]) /
+                    static_cast<double>(d.size());
+  }
+  out.rms_nm = std::sqrt(out.rms_nm);
+  return out;
+}
+
+struct Pooled {
+  double n = 0, squares = 0, width2 = 0, height2 = 0, angle2 = 0, width_in = 0, height_in = 0,
+         angle_in = 0, within = 0, seconds = 0;
+};
+
+/// The widths of rows are drawn once: the feature is straight.
+void judge(const char* what, const Case& c, const workflow::ProfileJob& job,
+           const HeightField& truth, std::map<std::string, Pooled>& pooled) {
+  const auto begin = std::chrono::steady_clock::now();
+  try {
+    const workflow::ProfileSummary s = workflow::run(job);
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const Off o = off(s.surface, s.deviation_nm, truth);
+    const Measured w = s.fit.left[profile_width], h = s.fit.left[profile_height],
+                   a = s.fit.left[profile_angle];
+    fmt::print("  {:28} {:5.2f} nm ({:3.0f} % in two); width {:6.2f} +- {:4.2f}, height {:6.2f} +- "
+               "{:5.2f}, angle {:5.2f} +- {:4.2f}; {:.0f} s{}{}\n",
+               what, o.rms_nm, 100 * o.within, w.value - c.shape.width_nm, w.standard_error,
+               h.value - c.shape.wall.height_nm, h.standard_error,
+               a.value - c.shape.wall.angle_deg, a.standard_error, seconds,
+               s.reasons.empty() ? "" : ": ", s.reasons.empty() ? "" : s.reasons.front());
+    Pooled& p = pooled[what];
+    const auto add = [](const Measured& m, double true_value, double& squares, double& in) {
+      squares += std::pow(m.value - true_value, 2);
+      in += std::abs(m.value - true_value) <= 2 * m.standard_error;
+    };
+    ++p.n, p.squares += o.rms_nm * o.rms_nm, p.within += o.within, p.seconds += seconds;
+    add(w, c.shape.width_nm, p.width2, p.width_in);
+    add(h, c.shape.wall.height_nm, p.height2, p.height_in);
+    add(a, c.shape.wall.angle_deg, p.angle2, p.angle_in);
+  } catch (const std::exception& error) {
+    fmt::print("  {:28} {}\n", what, error.what());
+  }
+  std::fflush(stdout);
+}
+
+/// Walls where thresholds see them, as wide as the rim's part on the ground's side.
+void judge_thresholds(const Case& c, const workflow::ProfileJob& job, const HeightField& truth,
+                      std::map<std::string, Pooled>& pooled) {
+  const ThresholdEdges found = find_edges(job.sem.image, FeatureKind::line);
+  HeightField surface = truth;
+  double width = 0, pairs = 0;
+  for (std::size_t e = 0; e + 1 < found.edges.size(); ++e)
+    if (found.edges[e].feature == found.edges[e + 1].feature)
+      width += found.edges[e + 1].place_nm - found.edges[e].place_nm, ++pairs;
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x) {
+      double nearest = HUGE_VAL, u = 0;
+      for (const ImageEdge& e : found.edges) {
+        const double d = surface.x_nm(x) - e.place_nm;
+        if (std::abs(d) < nearest) nearest = std::abs(d), u = e.material_right ? d : -d;
+      }
+      surface.z_nm(x, y) = u > 0 ? c.said_nm : 0;
+    }
+  Pooled& p = pooled["thresholds"];
+  const double rms = off(surface, {}, truth).rms_nm;
+  ++p.n, p.squares += rms * rms, p.width2 += std::pow(width / pairs - c.shape.width_nm, 2);
+  p.height2 += std::pow(c.said_nm - c.shape.wall.height_nm, 2);
+  fmt::print("  {:28} {:5.2f} nm; width {:6.2f}\n", "thresholds", rms,
+             width / pairs - c.shape.width_nm);
+}
+
+void judge_heights(const char* what, const workflow::ReconstructJob& job) {
   const auto begin = std::chrono::steady_clock::now();
   try {
     const workflow::ReconstructSummary s = workflow::run(job);
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    if (!s.truth) {
-      fmt::print("  {:34} {}: {}\n", what, name(s.verdict), s.reasons.front());
-      return;
-    }
-    fmt::print("  {:34} {:6.2f} nm, AFM alone {:6.2f}, within two {:5.1f} %;", what,
-               s.truth->rms_nm, s.truth->start_rms_nm, 100 * s.truth->coverage_2);
-    for (const workflow::RegionReport& r : s.truth->regions)
-      if (r.name == "edge" || r.name == "wall")
-        fmt::print(" {} {:.2f} ({:.0f} %)", r.name, r.rms_nm, 100 * r.coverage_2);
-    for (const ViewResult& v : s.result.views)
-      fmt::print(" tilt {:.2f} to {:.0f}", v.pose.tilt_deg, v.pose.azimuth_deg);
-    fmt::print(" {:.0f} s\n", seconds);
+    if (s.truth)
+      fmt::print("  {:28} {:5.2f} nm ({:3.0f} % in two); scan alone {:.2f}; {:.0f} s\n", what,
+                 s.truth->rms_nm, 100 * s.truth->coverage_2, s.truth->start_rms_nm, seconds);
+    else fmt::print("  {:28} {}\n", what, s.reasons.front());
   } catch (const std::exception& error) {
-    fmt::print("  {:34} {}\n", what, error.what());
+    fmt::print("  {:28} {}\n", what, error.what());
   }
   std::fflush(stdout);
 }
@@ -166,48 +257,89 @@ void judge(const char* what, const workflow::ReconstructJob& job) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    fmt::print(stderr, "bench_views MODEL.json [CASES [FIRST [FOLDER]]]\n");
-    return 2;
+  std::vector<std::string> words(argv + 1, argv + argc);
+  std::string model;
+  if (words.size() > 1 && words[0] == "--heights") {
+    model = words[1];
+    words.erase(words.begin(), words.begin() + 2);
   }
-  const int cases = argc > 2 ? std::atoi(argv[2]) : 4, first = argc > 3 ? std::atoi(argv[3]) : 0;
-  const std::filesystem::path folder = argc > 4 ? argv[4] : "";
+  const int cases = !words.empty() ? std::atoi(words[0].c_str()) : 6,
+            first = words.size() > 1 ? std::atoi(words[1].c_str()) : 2;
+  const std::filesystem::path folder = words.size() > 2 ? words[2] : "";
   workflow::CachedLibraries libraries(io::cache_folder(""));
+  std::map<std::string, Pooled> pooled;
   for (int i = first; i < first + cases; ++i) {
     const Case c = draw(i);
-    fmt::print("case {}: pitch {:.1f}, width {:.1f}, angle {:.2f}\n", i, c.shape.pitch_nm,
-               c.shape.width_nm, c.shape.wall.angle_deg);
-    workflow::ReconstructJob job;
-    job.model.file = argv[1];
-    job.sem.emplace();
-    job.sem->image = image_of(c, 0, 0, c.seed, libraries);
-    job.truth = truth_of(c);
-    std::vector<workflow::SemInput> views(2);
-    for (int k = 0; k < 2; ++k)
-      views[static_cast<std::size_t>(k)].image =
-          image_of(c, tilt_deg, 180.0 * k, c.seed + 100 * (1 + static_cast<std::uint64_t>(k)),
-                   libraries);
-    workflow::AfmInput afm;
-    afm.scan = scan_of(c);
+    fmt::print("case {}: pitch {:.1f}, width {:.1f}, angle {:.2f} deg; said to be {:.0f} nm high\n",
+               i, c.shape.pitch_nm, c.shape.width_nm, c.shape.wall.angle_deg, c.said_nm);
+    const std::vector<PlacedImage> up = images_of(c, 0, 0, c.seed, libraries),
+                                   to_x = images_of(c, tilt_deg, 0, c.seed + 100, libraries),
+                                   to_minus_x =
+                                       images_of(c, tilt_deg, 180, c.seed + 200, libraries);
+    const HeightField truth = truth_of(c), scan = scan_of(c);
     if (!folder.empty()) {
       const std::filesystem::path own = folder / std::to_string(i);
-      write(own / "up.tif", job.sem->image);
-      write(own / "to_x.tif", views[0].image);
-      write(own / "to_minus_x.tif", views[1].image);
-      io::write_height_field(own / "scan.gsf", afm.scan, {});
-      io::write_height_field(own / "truth.gsf", *job.truth, {});
+      write(own / "up.tif", up[0]);
+      write(own / "to_x.tif", to_x[0]);
+      write(own / "to_minus_x.tif", to_minus_x[0]);
+      write(own / "right.tif", up[1]);
+      write(own / "left.tif", up[3]);
+      io::write_height_field(own / "scan.gsf", scan, {});
+      io::write_height_field(own / "truth.gsf", truth, {});
     }
-    job.afm = afm;
-    // Lines look alike a pitch away: the place is given as landmarks would, 5 nm off.
-    job.pose.transform = Affine{1, 0, 4, 0, 1, -3};
+    workflow::ProfileJob job;
+    job.sem.image = up[0];
+    job.height_nm = c.said_nm, job.height_error_nm = 20;
+    job.material = io::find_material("Si", "bench");
+    job.energy_ev = energy_ev, job.spot_nm = spot_nm;
+    job.cache = io::cache_folder("");
     job.view_settings.tilt_error_deg = 0.05;
-    judge("scan and one view", job);
-    job.views = {views[0]};
-    job.view_settings.tilts_deg = {tilt_deg};
-    judge("scan and two views", job);
-    job.views = views;
-    job.view_settings.tilts_deg = {tilt_deg, tilt_deg};
-    job.view_settings.azimuths_deg = {0, 180};
-    judge("scan and three views", job);
+    judge_thresholds(c, job, truth, pooled);
+    judge("one view", c, job, truth, pooled);
+    workflow::ProfileJob two = job;
+    two.views.resize(1);
+    two.views[0].image = to_x[0];
+    two.view_settings.tilts_deg = {tilt_deg};
+    judge("two views", c, two, truth, pooled);
+    workflow::ProfileJob three = two;
+    three.views.resize(2);
+    three.views[1].image = to_minus_x[0];
+    three.view_settings.tilts_deg = {tilt_deg, tilt_deg};
+    three.view_settings.azimuths_deg = {0, 180};
+    judge("three views", c, three, truth, pooled);
+    workflow::ProfileJob quadrants = two;
+    for (const int k : {1, 3}) {
+      quadrants.views.emplace_back();
+      quadrants.views.back().image = up[static_cast<std::size_t>(k)];
+    }
+    quadrants.view_settings.tilts_deg = {tilt_deg, 0, 0};
+    quadrants.view_signals = {"SE", "BSE-right", "BSE-left"};
+    judge("two views and quadrants", c, quadrants, truth, pooled);
+    workflow::ProfileJob both = two;
+    both.height_nm = 0, both.height_error_nm = 0;
+    both.scan = scan;
+    judge("two views and a scan", c, both, truth, pooled);
+    if (model.empty()) continue;
+    workflow::ReconstructJob heights;
+    heights.model.file = model;
+    heights.sem.emplace();
+    heights.sem->image = up[0];
+    heights.truth = truth;
+    heights.afm.emplace();
+    heights.afm->scan = scan;
+    // Lines look alike a pitch away: the place is given as landmarks would, 5 nm off.
+    heights.pose.transform = Affine{1, 0, 4, 0, 1, -3};
+    judge_heights("heights, one view and a scan", heights);
+    heights.views.resize(1);
+    heights.views[0].image = to_x[0];
+    heights.view_settings = two.view_settings;
+    judge_heights("heights, two views, a scan", heights);
   }
+  for (const auto& [what, p] : pooled)
+    fmt::print("{:28} {:5.2f} nm; width {:5.2f}, height {:5.2f} nm, angle {:4.2f} deg; within two "
+               "{:3.0f}, {:3.0f}, {:3.0f} %, heights {:3.0f} %; {:.0f} s\n",
+               what, std::sqrt(p.squares / p.n), std::sqrt(p.width2 / p.n),
+               std::sqrt(p.height2 / p.n), std::sqrt(p.angle2 / p.n), 100 * p.width_in / p.n,
+               100 * p.height_in / p.n, 100 * p.angle_in / p.n, 100 * p.within / p.n,
+               p.seconds / p.n);
 }

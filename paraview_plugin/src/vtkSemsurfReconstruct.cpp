@@ -3,13 +3,16 @@
 
 #include <fmt/format.h>
 #include <vtkDataArray.h>
+#include <vtkCompositeDataSet.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
+#include <vtkMultiBlockDataSet.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkTable.h>
 
@@ -81,17 +84,40 @@ void fill_history(vtkTable* table, const std::vector<ScaleReport>& scales) {
   pv::add_column(table, "ended", ended);
 }
 
+/// What further SEM images are compared with, one block each.
+vtkSmartPointer<vtkMultiBlockDataSet> views_of(vtkInformationVector** inputs,
+                                               std::vector<ViewResult>& views) {
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    const auto number = static_cast<unsigned>(k);
+    const auto image =
+        pv::make_image_like(pv::image_input(inputs, 1, "SEM", static_cast<int>(k) + 1));
+    ViewResult& view = views[k];
+    pv::add_values(image, std::move(view.residual), "residual", "1");
+    pv::add_values(image, std::move(view.simulated), "simulated", "1");
+    pv::add_values(image, std::move(view.used), "used", "1");
+    image->GetPointData()->SetActiveScalars("residual");
+    blocks->SetBlock(number, image);
+    const std::string name = fmt::format("view {}, tilted by {:.2f} deg to {:.0f} deg", k + 2,
+                                         view.pose.tilt_deg, view.pose.azimuth_deg);
+    blocks->GetMetaData(number)->Set(vtkCompositeDataSet::NAME(), name.c_str());
+  }
+  return blocks;
+}
+
 }  // namespace
 
 int vtkSemsurfReconstruct::FillInputPortInformation(int port, vtkInformation* info) {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port > 2 ? "vtkPolyData" : "vtkImageData");
   if (port > 0) info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  if (port == 1) info->Set(vtkAlgorithm::INPUT_IS_REPEATABLE(), 1);
   return 1;
 }
 
 int vtkSemsurfReconstruct::FillOutputPortInformation(int port, vtkInformation* info) {
   info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 1   ? "vtkPolyData"
                                              : port == 4 ? "vtkTable"
+                                             : port == 5 ? "vtkMultiBlockDataSet"
                                                          : "vtkImageData");
   return 1;
 }
@@ -128,6 +154,11 @@ int vtkSemsurfReconstruct::RequestData(vtkInformation*, vtkInformationVector** i
           if (sem) {
             pv::complete(job.model, values);
             job.sem->image = pv::to_placed_image(sem, pv::chosen_array(this, 1, sem), "SEM");
+            for (int k = 1; vtkImageData* const view = pv::image_input(inputs, 1, "SEM", k); ++k) {
+              job.views.emplace_back();
+              job.views.back().image =
+                  pv::to_placed_image(view, pv::chosen_array(this, 1, view), "SEM");
+            }
             job.pose.landmarks =
                 pv::landmarks_of(pv::surface_input(inputs, 4), pv::surface_input(inputs, 3));
           }
@@ -149,6 +180,8 @@ int vtkSemsurfReconstruct::RequestData(vtkInformation*, vtkInformationVector** i
           vtkNew<vtkTable> history;
           fill_history(history, r.scales);
           pv::give(outputs->GetInformationObject(4), history);
+          vtkMultiBlockDataSet::GetData(outputs->GetInformationObject(5))
+              ->ShallowCopy(views_of(inputs, r.views));
           // Like the inputs, so that pieces of them are the pieces that were announced.
           const auto afm = pv::make_image_like(pv::image_input(inputs, 0, "Input"));
           const auto surface = pv::make_image_like(pv::image_input(inputs, job.sem ? 1 : 0, "SEM"));

@@ -110,6 +110,20 @@ def reconstruction_equals_the_command():
     same(again, got, "after an abort")
 
 
+def further_images_are_views():
+    semsurf("reconstruct", "--afm", "scan.txt", "--sem", "sem.tif", "--sem", "sem.tif", "--tilt", "2deg", *CHAIN, "--transform",
+            "1,0,0,0,1,0", "--no-picture", "--iterations", 2, "--corrections", 0, "-o", "views", "-q", code=None)
+    source = simple.Reconstruct(Input=scan(), SEM=[sem(), sem()], Tip=tip(), ModelFile=str(MODEL), LevelMethod="None",
+                                UseTransform=1, Iterations=2, Corrections=0, Tilt="2")
+    want = fetch(simple.XMLImageDataReader(FileName=[str(FOLDER / "views" / "surface.vti")]))
+    same(array(fetch(source), "z_nm").astype(numpy.float32), array(want, "z_nm"), "the surface")
+    blocks = fetch(source, 5)
+    expect(blocks.GetNumberOfBlocks() == 1, "a block for the view")
+    want = fetch(simple.XMLImageDataReader(FileName=[str(FOLDER / "views" / "simulated_sem2.vti")]))
+    for name in ("simulated", "residual"):
+        same(array(blocks.GetBlock(0), name).astype(numpy.float32), array(want, name), name)
+
+
 def landmarks_and_methods_reach_the_reconstruction():
     """By conjugate gradients, from landmarks alone, without deviations: as the command does it."""
     places, moved = PLACES, [(x + 6, y - 3) for x, y in PLACES]
@@ -169,6 +183,6 @@ def wrong_properties_are_refused():
 
 
 make_files()
-run(registration_equals_the_command, landmarks_make_the_map, reconstruction_equals_the_command,
+run(registration_equals_the_command, landmarks_make_the_map, reconstruction_equals_the_command, further_images_are_views,
     landmarks_and_methods_reach_the_reconstruction, scans_alone_are_reconstructed,
     calibration_equals_the_command, wrong_properties_are_refused)

@@ -72,6 +72,13 @@ STEPS = {
         "Corrections": (0, "reconstruction.corrections=0"), "CorrectionElectrons": (8, "reconstruction.correction_electrons=8"),
         "LineJitter": (0.3, "reconstruction.line_jitter=0.3"),
         "Film": ("C", "reconstruction.film=C", {"Gains": "2,3", "Offset": "4"}),
+        "Tilt": ("3", "beam.tilt_deg=3", {"views": True}),
+        "Azimuth": ("90", "beam.azimuth_deg=90", {"views": True, "Tilt": "3"}),
+        "TiltError": (0.2, "reconstruction.tilt_error_deg=0.2"),
+        "ViewEnergy": ("1000", "reconstruction.view_energy_ev=1000", {"views": True}),
+        "ViewGains": ("2,3,4", "reconstruction.view_gains=2,3,4", {"views": True}),
+        "ViewNoise": ("0,9", "reconstruction.view_noise=0,9,", {"views": True}),
+        "ViewPlace": ("0,0", "reconstruction.view_place=0,0", {"views": True}),
         "FitDrift": (1, "reconstruction.fit_drift=on"), "FitSpot": (1, "reconstruction.fit_spot=on"),
         "ScanTilt": ("0,0", "reconstruction.scan_tilt=0,0,0,0"), "Upsample": (2, "reconstruction.upsample=2")},
     "AFMTip": {"Shape": ("Ball", "tip.shape=ball:5nm"), "Radius": (7, "tip.shape=cone:7nm,15deg"),
@@ -124,6 +131,8 @@ def step(name, properties):
     if properties.pop("landmarks", False):
         places = [(-30, -20), (30, -20), (-20, 25), (25, 20)]
         properties |= {"SEMLandmarks": points(places), "AFMLandmarks": points(places)}
+    if properties.pop("views", False):
+        properties |= {"SEM": [sem, simple.PredictSEM(Input=scan, ModelFile=MODEL)]}
     return getattr(simple, name)(**properties)
 
 
@@ -133,8 +142,10 @@ def said(source):
         source.UpdatePipeline()
     found = {}
     for port in range(source.SMProxy.GetNumberOfOutputPorts()):
-        found |= {key.removeprefix("option."): value for key, value in texts(fetch(source, port)).items()
-                  if key.startswith("option.")}
+        data = fetch(source, port)
+        if data.IsA("vtkCompositeDataSet"):
+            continue
+        found |= {key.removeprefix("option."): value for key, value in texts(data).items() if key.startswith("option.")}
     return found
 
 

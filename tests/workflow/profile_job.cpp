@@ -86,8 +86,65 @@ TEST_F(ProfileJobTest, MeasuresLinesAndSaysHowWell) {
   EXPECT_EQ(json["width_nm"]["value"], width.value);
   EXPECT_EQ(json["parameters"]["profile.height_nm"], "30");
   EXPECT_EQ(json["trusted"], s.reasons.empty());
-  for (const char* file : {"edges.csv", "profiles.csv", "spectrum.csv"})
+  for (const char* file :
+       {"edges.csv", "profiles.csv", "spectrum.csv", "surface.gsf", "surface.vti"})
     EXPECT_TRUE(fs::exists(job_.folder / file)) << file;
+  // The surface: lines 30 nm high, about which nothing is known at the walls alone.
+  EXPECT_EQ(s.surface.z_nm.width(), 90);
+  const auto [low, high] = std::ranges::minmax(s.surface.z_nm.data());
+  EXPECT_EQ(low, 0);
+  EXPECT_EQ(high, 30);
+  const auto middle = static_cast<int>(s.fit.edges()[0].smooth_nm[12] / pixel_nm + 0.5);
+  EXPECT_GT(s.deviation_nm(middle, 12), 1);
+  EXPECT_LT(s.deviation_nm(middle + 10, 12), 0.01);
+}
+
+TEST_F(ProfileJobTest, AScanTellsTheHeight) {
+  HeightField scan{{5, 5, 0, 0}, Grid<double>(60, 40)};
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 60; ++x)
+      scan.z_nm(x, y) = 7 + (x / 15 % 2 == 0 ? 31.5 : 0) + 0.1 * ((x * 7 + y * 3) % 5);
+  job_.scan = scan;
+  job_.height_nm = 0;
+  job_.electrons = 10, job_.middle_electrons = 10;
+  job_.folder.clear();
+  const ProfileSummary s = run(job_);
+  ASSERT_TRUE(s.scan_height_nm);
+  EXPECT_NEAR(s.scan_height_nm->value, 31.5, 0.2);
+  EXPECT_GT(s.scan_height_nm->standard_error, 0.1);  // scans are calibrated to half a per cent
+  EXPECT_NEAR(s.fit.left[profile_height].value, 31.5, 1);
+  for (double& z : job_.scan->z_nm.data()) z = 7;
+  EXPECT_THROW(run(job_), InvalidInput);
+}
+
+TEST_F(ProfileJobTest, FurtherImagesHaveTheirOwnTiltsAndSignals) {
+  job_.electrons = 10, job_.middle_electrons = 10;
+  job_.folder.clear();
+  job_.views.resize(2);
+  job_.views[0].image = job_.views[1].image = job_.sem.image;
+  job_.view_settings.tilts_deg = {0, 4, 0};
+  job_.view_settings.azimuths_deg = {0, 180, 0};
+  job_.view_signals = {"SE", "SE", "BSE-right"};
+  const ProfileSummary s = run(job_);
+  ASSERT_EQ(s.fit.sights.size(), 3u);
+  EXPECT_NEAR(s.fit.sights[1].tilt_deg.value, 4, 2);
+  EXPECT_EQ(s.fit.sights[2].tilt_deg.value, 0);
+  // One library for the first, and one for each wall of the others.
+  EXPECT_EQ(s.simulated % 5, 0);
+
+  const auto refused = [&](const char* what) {
+    EXPECT_THAT([&] { run(job_); }, ThrowsMessage<Error>(HasSubstr(what)));
+  };
+  job_.view_settings.tilts_deg = {1, 4, 0};
+  refused("beam.tilt");
+  job_.view_settings.tilts_deg = {1, 2, 3, 4};
+  refused("2 further SEM images");
+  job_.view_settings.tilts_deg = {4, 0};
+  job_.view_signals = {"SE", "CL"};
+  refused("view_signal");
+  job_.view_signals = {"SE", "side"};
+  job_.along_x = true;
+  refused("along_x");
 }
 
 TEST_F(ProfileJobTest, LinesAlongXAreTurnedAndThreadsChangeNothing) {

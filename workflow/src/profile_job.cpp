@@ -271,7 +271,7 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
       };
       signals.push_back(simulate_signals(
           job, views[k], box, s.pitch_nm, (last ? finer : 1) * job.electrons,
-          job.seed + static_cast<std::uint64_t>(round) * 1000, libraries,
+          job.seed + static_cast<std::uint64_t>(round) * 1000, round == 0 && !last, libraries,
           reporter.watch().part(part(k), part(k + 1))));
       s.simulated += static_cast<std::int64_t>(signals.back().left.shapes.size() +
                                                signals.back().right.shapes.size());

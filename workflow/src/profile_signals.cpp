@@ -68,7 +68,7 @@ std::vector<ProfileNumbers> shapes_of(const ProfileJob& job, const ProfileBox& b
 /// How far beside the wall signals are simulated: to the middle of what is narrow, or as far as the
 /// wall is felt.
 WallSimulation simulation_of(const ProfileJob& job, const ProfileView& view, const ProfileBox& box,
-                             double pitch_nm) {
+                             double pitch_nm, bool coarse) {
   WallSimulation how{job.material, job.physics, view.energy_ev, job.spot_nm};
   how.signal = view.signal;
   how.tilt_deg = view.tilt_deg, how.azimuth_deg = view.azimuth_deg;
@@ -90,7 +90,7 @@ WallSimulation simulation_of(const ProfileJob& job, const ProfileView& view, con
   const bool line = job.kind == FeatureKind::line;
   how.first_u_nm = line ? -outer : -inner;
   const double last = line ? inner : outer;
-  how.step_nm = std::clamp(0.4 * view.pixel_nm, 0.5, 2.0);
+  how.step_nm = std::clamp(0.4 * view.pixel_nm, 0.5, 2.0) * (coarse ? 2 : 1);
   how.places = std::max(8, static_cast<int>((last - how.first_u_nm) / how.step_nm) + 1);
   how.electrons = job.electrons;
   return how;
@@ -185,8 +185,8 @@ ProfileLibrary Signals::alone(std::size_t shape) const {
 
 WallSignals simulate_signals(const ProfileJob& job, const ProfileView& view, const ProfileBox& box,
                              double pitch_nm, std::int64_t electrons, std::uint64_t seed,
-                             mc::LibrarySource& libraries, const Watch& watch) {
-  WallSimulation how = simulation_of(job, view, box, pitch_nm);
+                             bool coarse, mc::LibrarySource& libraries, const Watch& watch) {
+  WallSimulation how = simulation_of(job, view, box, pitch_nm, coarse);
   // A line's left wall has the ground at its left, a gap's right one.
   const bool both = view.one_sided() && job.kind != FeatureKind::edge;
   how.left = both && job.kind == FeatureKind::line;

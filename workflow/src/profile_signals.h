@@ -61,13 +61,13 @@ struct Signals {
 
 /// Of the walls with the ground at their left, and at their right: by the same random numbers, so
 /// that they differ by their shapes alone, on the level of the middle one's by many more. Where both
-/// walls give one signal, the second is empty.
+/// walls give one signal, the second is empty. `coarse`: at half the places.
 struct WallSignals {
   Signals left, right;
 };
 WallSignals simulate_signals(const ProfileJob& job, const ProfileView& view, const ProfileBox& box,
                              double pitch_nm, std::int64_t electrons, std::uint64_t seed,
-                             mc::LibrarySource& libraries, const Watch& watch);
+                             bool coarse, mc::LibrarySource& libraries, const Watch& watch);
 
 /// The box about the shape whose signals alone are most like the images, gains, offsets and places
 /// fitted: over a wide box no quadratic function holds.

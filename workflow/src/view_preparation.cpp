@@ -115,7 +115,8 @@ std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary
     found.saturated = leave_out_saturated(image);
     ModelRequest request = job.model;
     if (request.folder.empty()) request.folder = job.folder;
-    if (const double energy = angles[k].energy_ev; energy > 0 && energy != request.energy_ev) {
+    if (const double energy = angles[k].energy_ev;
+        energy > 0 && energy != s.model->trained.scope.energy_ev) {
       request.energy_ev = energy;
       request.file.clear();
     }

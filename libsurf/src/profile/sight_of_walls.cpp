@@ -14,6 +14,8 @@ namespace {
 
 constexpr int row_steps = 2, fewest_pixels = 16;
 constexpr double least_weight = 0.1;  // of the usual row's: rows that tell less are not seen
+// Physics and detectors also differ in how bright ground and top are, over tens of nanometres.
+constexpr double farther = 10, far_share = 1;  // of the near places' distance and error
 constexpr double degree = std::numbers::pi / 180;
 
 double median_of(std::vector<double> v) {
@@ -31,8 +33,10 @@ SightOfWalls::SightOfWalls(const ProfileSight& sight, const ProfileFitOptions& o
   const double x = std::sin(t) * std::cos(a);
   shortening_ = 1 - x * x / (1 + std::cos(t));
   const ProfileLibrary& l = *sight.left;
-  bumps_.assign(1 + static_cast<std::size_t>(
-                        std::ceil((l.last_u_nm() - l.first_u_nm()) / options.model_error_nm)),
+  const double range_nm = l.last_u_nm() - l.first_u_nm();
+  near_bumps_ = 1 + static_cast<int>(std::ceil(range_nm / options.model_error_nm));
+  bumps_.assign(static_cast<std::size_t>(near_bumps_ + 1) +
+                    static_cast<std::size_t>(std::ceil(range_nm / (farther * options.model_error_nm))),
                 0);
   const auto rows = static_cast<std::size_t>(sight.data.rows);
   for (const ImageEdge& e : sight.data.edges) {
@@ -76,22 +80,35 @@ ProfileNumbers SightOfWalls::seen(const Walls& walls, int side) const {
 }
 
 SightOfWalls::Bump SightOfWalls::bump_at(double u) const {
-  const double at = std::clamp((u - sight_->left->first_u_nm()) / options_->model_error_nm, 0.0,
-                               static_cast<double>(bumps() - 1) - 1e-9);
-  const int first = static_cast<int>(at);
-  return {first, {1 - (at - first), at - first}};
+  const auto among = [&](double distance_nm, int count) {
+    const double at = std::clamp((u - sight_->left->first_u_nm()) / distance_nm, 0.0,
+                                 static_cast<double>(count - 1) - 1e-9);
+    const int first = static_cast<int>(at);
+    return std::pair(first, at - first);
+  };
+  const auto [near, near_share] = among(options_->model_error_nm, near_bumps_);
+  const auto [far, far_share] =
+      among(farther * options_->model_error_nm, bumps() - near_bumps_);
+  return {{near, near + 1, near_bumps_ + far, near_bumps_ + far + 1},
+          {1 - near_share, near_share, 1 - far_share, far_share}};
 }
 
-double SightOfWalls::bump_deviation() const {
+double SightOfWalls::bumps_at(double u) const {
+  const Bump b = bump_at(u);
+  double sum = 0;
+  for (std::size_t i = 0; i < b.numbers.size(); ++i)
+    sum += b.weights[i] * bumps_[static_cast<std::size_t>(b.numbers[i])];
+  return sum;
+}
+
+double SightOfWalls::bump_deviation(int number) const {
   constexpr double least = 1e-6;  // a prior of no width has no inverse
-  return gain_ * std::max(options_->model_error, least) * contrast_;
+  const double share = number < near_bumps_ ? 1 : far_share;
+  return gain_ * std::max(options_->model_error * share, least) * contrast_;
 }
 
 double SightOfWalls::model(const ProfileLibrary::Value& v, double u) const {
-  const Bump b = bump_at(u);
-  return gain_ * signal(v) + offset_ +
-         b.weights[0] * bumps_[static_cast<std::size_t>(b.first)] +
-         b.weights[1] * bumps_[static_cast<std::size_t>(b.first) + 1];
+  return gain_ * signal(v) + offset_ + bumps_at(u);
 }
 
 double SightOfWalls::variance_of(double level) const {
@@ -160,8 +177,8 @@ void SightOfWalls::derivatives(const WallLayout& layout, int first, const Profil
     d.emplace_back(layout.wall(side) + static_cast<int>(k), gain_ * v.by_number[layout.free[k]]);
   d.emplace_back(first + edge(s.edge), -sign_of(edge_of(s)) * gain_ * slope);
   const Bump b = bump_at(u);
-  d.emplace_back(first + bump(b.first), b.weights[0]);
-  d.emplace_back(first + bump(b.first + 1), b.weights[1]);
+  for (std::size_t i = 0; i < b.numbers.size(); ++i)
+    d.emplace_back(first + bump(b.numbers[i]), b.weights[i]);
   if (sight_->tilt_error_deg > 0)
     d.emplace_back(first + tilt(), gain_ * tilted_by(side) * v.by_number[profile_angle]);
 }
@@ -189,7 +206,7 @@ void SightOfWalls::add_to(const WallLayout& layout, int first, const Walls& wall
     out.matrix(i, i) += 1 / (deviation * deviation);
   };
   for (int k = 0; k < bumps(); ++k)
-    prior(first + bump(k), bumps_[static_cast<std::size_t>(k)], bump_deviation());
+    prior(first + bump(k), bumps_[static_cast<std::size_t>(k)], bump_deviation(k));
   const double known = sight_->tilt_error_deg;
   prior(first + tilt(), tilt_off_deg_, known > 0 ? known : 1);  // 1: held, as it never moves
 }
@@ -308,7 +325,9 @@ SightFit SightOfWalls::result(const Walls& walls, const Eigen::MatrixXd& covaria
                          errors_[e]});
   out.profiles = profiles(walls);
   double squares = 0;
-  for (const double b : bumps_) squares += b * b / static_cast<double>(bumps_.size());
+  for (int k = 0; k < near_bumps_; ++k)
+    squares += std::pow(bumps_at(sight_->left->first_u_nm() + k * options_->model_error_nm), 2) /
+               near_bumps_;
   out.discrepancy_share = std::sqrt(squares) / (gain_ * contrast_);
   return out;
 }

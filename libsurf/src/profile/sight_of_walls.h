@@ -93,12 +93,15 @@ class SightOfWalls {
   ProfileNumbers seen(const Walls& walls, int side) const;
   double tilted_by(int side) const { return side == 0 ? -toward_x_ : toward_x_; }
 
+  /// What the simulation is off by at a place, as a sum of its numbers: those at near places, and
+  /// those at far ones.
   struct Bump {
-    int first;
-    double weights[2];
+    std::array<int, 4> numbers;
+    std::array<double, 4> weights;
   };
   Bump bump_at(double u) const;
-  double bump_deviation() const;
+  double bumps_at(double u) const;
+  double bump_deviation(int number) const;
   double signal(const ProfileLibrary::Value& v) const { return v.value + 0.5 * blur2_ * v.by_u2; }
   double model(const ProfileLibrary::Value& v, double u) const;
   double variance_of(double level) const;
@@ -122,7 +125,8 @@ class SightOfWalls {
   double gain_ = 1, offset_ = 0, blur2_ = 0, contrast_ = 1, tilt_off_deg_ = 0;
   std::array<double, 2> noise_{};  // variance at level 0, and per level
   double least_variance_ = 0;
-  std::vector<double> bumps_;
+  std::vector<double> bumps_;  // at near places, then at far ones
+  int near_bumps_ = 0;
   std::vector<std::vector<double>> places_, raw_, errors_;  // of each edge, by row
 };
 

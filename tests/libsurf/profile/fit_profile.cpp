@@ -191,6 +191,70 @@ TEST(FitProfile, AWrongModelIsToldByWhatItIsOffBy) {
   EXPECT_GT(fit(made.image, o).sights.front().discrepancy_share, 5 * right + 0.01);
 }
 
+/// A bright flank, as wide as the beam sees it, which grows with the height and with the angle
+/// between beam and wall.
+double flank_signal(double u, const ProfileNumbers& n, double tilt_deg) {
+  constexpr double degree = 3.14159265358979 / 180;
+  const double half = 0.5 * n[profile_height] / std::tan((n[profile_angle] - tilt_deg) * degree);
+  const auto step = [](double x) { return 0.5 * (1 + std::erf(x / 3)); };
+  return 0.8 + 0.2 * step(u) + 1.1 * step(u + half) * step(half + 2 - u);
+}
+
+/// Two images of lines 100 nm high, the second tilted to +x: that its left walls look wider and its
+/// right ones narrower tells how high they are.
+TEST(FitProfile, ATiltedImageTellsTheHeightAndItsTiltIsFitted) {
+  const ProfileBox open{{80, 106, 84.5, 4, 3}, {6, 12, 1.5, 0, 0}};
+  const ProfileNumbers real{80, 100, 84, 4, 3};
+  constexpr double tilt = 4, wrong = 3.8, pixel = 2;
+  const auto shapes = profile_design(open);
+  const auto library_at = [&](double tilted) {
+    std::vector<std::vector<double>> signals;
+    for (const ProfileNumbers& n : shapes) {
+      signals.emplace_back();
+      for (int k = 0; k <= 140; ++k)
+        signals.back().push_back(flank_signal(-35 + 0.5 * k, n, tilted));
+    }
+    return ProfileLibrary(open, -35, 0.5, shapes, signals);
+  };
+  const auto image_at = [&](double tilted, std::uint64_t seed) {
+    PlacedImage image;
+    image.pitch_x_nm = image.pitch_y_nm = pixel;
+    image.values = Grid<double>(90, 128);
+    NormalNumbers normal(seed, 9);
+    for (int y = 0; y < 128; ++y)
+      for (int x = 0; x < 90; ++x) {
+        const double at = x * pixel - 91.3, u = 0.5 * real[profile_width] - std::abs(at);
+        image.values(x, y) = 100 * flank_signal(std::clamp(u, -35.0, 35.0), real,
+                                                at < 0 ? tilted : -tilted) +
+                             20 + 8 * normal();
+      }
+    return image;
+  };
+  const ProfileLibrary up = library_at(0), left = library_at(wrong), right = library_at(-wrong);
+  ProfileFitOptions o = usual();
+  constexpr double unknown = std::numeric_limits<double>::infinity();
+  o.prior_mean = open.middle;
+  o.prior_deviation = {unknown, 12, unknown, 0, 0};
+  const auto sight = [&](double tilted, std::uint64_t seed, const ProfileLibrary& l,
+                         const ProfileLibrary& r) {
+    const PlacedImage image = image_at(tilted, seed);
+    return ProfileSight{profile_data(image, find_edges(image, FeatureKind::line).edges), &l, &r,
+                        tilted > 0 ? wrong : 0.0, 0, tilted > 0 ? 0.3 : 0.0};
+  };
+  const ProfileSight above = sight(0, 1, up, up), aside = sight(tilt, 2, left, right);
+  const ProfileFit one = fit_profile({above}, o), two = fit_profile({above, aside}, o);
+  const Measured height = two.left[profile_height], tilted = two.sights[1].tilt_deg;
+  EXPECT_LT(height.standard_error, 0.7 * one.left[profile_height].standard_error);
+  EXPECT_NEAR(height.value, 100, 3 * height.standard_error);
+  EXPECT_NEAR(tilted.value, tilt, 3 * tilted.standard_error);
+  EXPECT_LT(tilted.standard_error, 0.3001);
+  // A flank is no quadratic function of its numbers.
+  EXPECT_NEAR(two.left[profile_width].value, 80, 3 * two.left[profile_width].standard_error + 0.1);
+  EXPECT_NEAR(two.left[profile_angle].value, 84, 3 * two.left[profile_angle].standard_error);
+  EXPECT_EQ(two.sights[1].edges.size(), 2u);
+  EXPECT_EQ(one.sights[0].tilt_deg.standard_error, 0);
+}
+
 TEST(FitProfile, RefusesAnEdgeWithoutPixels) {
   ProfileData data = profile_data(lines(1, 0, 8).image, {{0, true, 51, 0, 91}});
   data.samples.resize(10);

@@ -20,7 +20,7 @@ struct ProfileBox {
 
 /// Shapes to simulate for a library of this box: its middle, and points that fill it evenly
 /// (Halton's sequence), enough for all linear and quadratic terms with `per_term` points each.
-std::vector<ProfileNumbers> profile_design(const ProfileBox& box, double per_term = 2.5);
+std::vector<ProfileNumbers> profile_design(const ProfileBox& box, double per_term = 2);
 
 /// The middle shape's signal as it is known better than by the design's: its values and their
 /// variances at the places of the signals.
