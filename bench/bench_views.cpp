@@ -2,7 +2,8 @@
 // How far surfaces of lines are off that come from one or more SEM images, with a scan and without,
 // whether their errors hold, and how long that takes. The images are by the other tier of physics:
 //   bench_views [CASES [FIRST [FOLDER]]]   with a folder, inputs and results go there
-//   bench_views --heights MODEL.json [CASES [FIRST [FOLDER]]]   the reconstruction of heights beside
+//   bench_views --heights MODEL.json [CASES [FIRST [FOLDER]]]   the reconstruction of heights
+//   beside
 // Lines 100 nm high, of drawn width, wall angle and pitch, pixels of 4 nm, 150 electrons per pixel;
 // tilts of 0 and 3 degrees to both sides, said to 0.05 degrees; BSE by quadrants; a scan of 12 nm
 // pitch by a tip of 15 nm. Without a scan the height is said to be 100 +- 20 nm, as it is drawn.
@@ -95,8 +96,8 @@ std::vector<PlacedImage> images_of(const Case& c, double tilt, double azimuth_de
   options.detectors.insert(options.detectors.end(), quadrants.begin(), quadrants.end());
   mc::Physics physics;
   mc::parse_physics("inelastic=dielectric", physics);
-  const mc::SimulationResult done = mc::simulate(mc::Scene(specimen, beam, scan, physics), options,
-                                                 {.libraries = &libraries});
+  const mc::SimulationResult done =
+      mc::simulate(mc::Scene(specimen, beam, scan, physics), options, {.libraries = &libraries});
   std::vector<PlacedImage> images;
   for (const std::size_t detector : {0, 2, 3, 4, 5}) {
     PlacedImage image;
@@ -113,12 +114,11 @@ std::vector<PlacedImage> images_of(const Case& c, double tilt, double azimuth_de
 }
 
 HeightField truth_of(const Case& c) {
-  HeightField truth{{pixel_nm, pixel_nm, 3 - 0.5 * (columns - 1) * pixel_nm,
-                     -0.5 * (rows - 1) * pixel_nm},
-                    Grid<double>(columns, rows)};
+  HeightField truth{
+      {pixel_nm, pixel_nm, 3 - 0.5 * (columns - 1) * pixel_nm, -0.5 * (rows - 1) * pixel_nm},
+      Grid<double>(columns, rows)};
   for (int y = 0; y < rows; ++y)
-    for (int x = 0; x < columns; ++x)
-      truth.z_nm(x, y) = height_nm(c.shape, truth.x_nm(x));
+    for (int x = 0; x < columns; ++x) truth.z_nm(x, y) = height_nm(c.shape, truth.x_nm(x));
   return truth;
 }
 
@@ -131,10 +131,10 @@ HeightField scan_of(const Case& c) {
   for (int y = 0; y < dense.z_nm.height(); ++y)
     for (int x = 0; x < dense.z_nm.width(); ++x)
       dense.z_nm(x, y) = height_nm(c.shape, dense.x_nm(x));
-  const HeightField seen = dilate(
-      dense, workflow::tip_by_shape({workflow::parse_tip_shape("cone:15nm,15deg", "tip"), 61,
-                                     pitch / fine, pitch / fine},
-                                    "tip"));
+  const HeightField seen =
+      dilate(dense, workflow::tip_by_shape({workflow::parse_tip_shape("cone:15nm,15deg", "tip"), 61,
+                                            pitch / fine, pitch / fine},
+                                           "tip"));
   HeightField scan{{pitch, pitch, dense.origin_x_nm, dense.origin_y_nm}, Grid<double>(n, m)};
   const AfmNoise noise{0.6, 0.1};
   const Grid<double> e = simulate_noise(noise, n, m, c.seed);
@@ -168,8 +168,8 @@ Off off(const HeightField& found, const Grid<double>& deviation_nm, const Height
   for (std::size_t i = 0; i < d.size(); ++i) {
     out.rms_nm += std::pow(d[i] - median, 2) / static_cast<double>(d.size());
     if (!deviation_nm.empty())
-      out.within += (std::abs(d[i] - median) <= 2 * deviation_nm.data()[i]) /
-                    static_cast<double>(d.size());
+      out.within +=
+          (std::abs(d[i] - median) <= 2 * deviation_nm.data()[i]) / static_cast<double>(d.size());
   }
   out.rms_nm = std::sqrt(out.rms_nm);
   return out;
@@ -191,12 +191,13 @@ void judge(const char* what, const Case& c, const workflow::ProfileJob& job,
     const Off o = off(s.surface, s.deviation_nm, truth);
     const Measured w = s.fit.left[profile_width], h = s.fit.left[profile_height],
                    a = s.fit.left[profile_angle];
-    fmt::print("  {:28} {:5.2f} nm ({:3.0f} % in two); width {:6.2f} +- {:4.2f}, height {:6.2f} +- "
-               "{:5.2f}, angle {:5.2f} +- {:4.2f}; {:.0f} s{}{}\n",
-               what, o.rms_nm, 100 * o.within, w.value - c.shape.width_nm, w.standard_error,
-               h.value - c.shape.wall.height_nm, h.standard_error,
-               a.value - c.shape.wall.angle_deg, a.standard_error, seconds,
-               s.reasons.empty() ? "" : ": ", s.reasons.empty() ? "" : s.reasons.front());
+    fmt::print(
+        "  {:28} {:5.2f} nm ({:3.0f} % in two); width {:6.2f} +- {:4.2f}, height {:6.2f} +- "
+        "{:5.2f}, angle {:5.2f} +- {:4.2f}; {:.0f} s{}{}\n",
+        what, o.rms_nm, 100 * o.within, w.value - c.shape.width_nm, w.standard_error,
+        h.value - c.shape.wall.height_nm, h.standard_error, a.value - c.shape.wall.angle_deg,
+        a.standard_error, seconds, s.reasons.empty() ? "" : ": ",
+        s.reasons.empty() ? "" : s.reasons.front());
     Pooled& p = pooled[what];
     const auto add = [](const Measured& m, double true_value, double& squares, double& in) {
       squares += std::pow(m.value - true_value, 2);
@@ -336,10 +337,10 @@ int main(int argc, char** argv) {
     judge_heights("heights, two views, a scan", heights);
   }
   for (const auto& [what, p] : pooled)
-    fmt::print("{:28} {:5.2f} nm; width {:5.2f}, height {:5.2f} nm, angle {:4.2f} deg; within two "
-               "{:3.0f}, {:3.0f}, {:3.0f} %, heights {:3.0f} %; {:.0f} s\n",
-               what, std::sqrt(p.squares / p.n), std::sqrt(p.width2 / p.n),
-               std::sqrt(p.height2 / p.n), std::sqrt(p.angle2 / p.n), 100 * p.width_in / p.n,
-               100 * p.height_in / p.n, 100 * p.angle_in / p.n, 100 * p.within / p.n,
-               p.seconds / p.n);
+    fmt::print(
+        "{:28} {:5.2f} nm; width {:5.2f}, height {:5.2f} nm, angle {:4.2f} deg; within two "
+        "{:3.0f}, {:3.0f}, {:3.0f} %, heights {:3.0f} %; {:.0f} s\n",
+        what, std::sqrt(p.squares / p.n), std::sqrt(p.width2 / p.n), std::sqrt(p.height2 / p.n),
+        std::sqrt(p.angle2 / p.n), 100 * p.width_in / p.n, 100 * p.height_in / p.n,
+        100 * p.angle_in / p.n, 100 * p.within / p.n, p.seconds / p.n);
 }

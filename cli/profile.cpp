@@ -136,11 +136,11 @@ void print_summary(const workflow::ProfileJob& job, const workflow::ProfileSumma
     print_line("height", length(s.fit.left[profile_height]));
   for (std::size_t k = 1; k < s.fit.sights.size(); ++k)
     if (s.fit.sights[k].tilt_deg.value != 0)
-      print_line(fmt::format("view {}", k + 1),
-                 fmt::format("tilted by {:.3f} ± {:.3f} deg; {:.1f} % of its contrast unexplained",
-                             s.fit.sights[k].tilt_deg.value,
-                             s.fit.sights[k].tilt_deg.standard_error,
-                             100 * s.fit.sights[k].discrepancy_share));
+      print_line(
+          fmt::format("view {}", k + 1),
+          fmt::format("tilted by {:.3f} ± {:.3f} deg; {:.1f} % of its contrast unexplained",
+                      s.fit.sights[k].tilt_deg.value, s.fit.sights[k].tilt_deg.standard_error,
+                      100 * s.fit.sights[k].discrepancy_share));
   if (s.measured_pitch_nm) print_line("pitch", length(*s.measured_pitch_nm));
   print_wall(job.walls_apart ? "left wall" : "wall", s.fit.left);
   if (job.walls_apart) print_wall("right wall", s.fit.right);
@@ -170,13 +170,18 @@ void add_profile(CLI::App& app, Action& action) {
   CLI::App* sub = app.add_subcommand(
       "profile", "Widths, wall angles and edge roughness of lines, trenches and holes");
   with_role(sub->add_option("IMAGE", o->image, "The SEM image")->type_name("FILE"), FileRole::read);
-  o->bound.headings = {
-      {"profile", "Shape"},  {"sem", "SEM image"},        {"specimen", "SEM image"},
-      {"reconstruction", "Further images"}, {"reconstruction.afm", "Shape"},
-      {"beam.tilt", "Further images"}, {"beam.azimuth", "Further images"},
-      {"profile.view_signal", "Further images"},
-      {"beam", "SEM image"}, {"simulation", "SEM image"}, {"output", "Output"},
-      {"job", "Output"}};
+  o->bound.headings = {{"profile", "Shape"},
+                       {"sem", "SEM image"},
+                       {"specimen", "SEM image"},
+                       {"reconstruction", "Further images"},
+                       {"reconstruction.afm", "Shape"},
+                       {"beam.tilt", "Further images"},
+                       {"beam.azimuth", "Further images"},
+                       {"profile.view_signal", "Further images"},
+                       {"beam", "SEM image"},
+                       {"simulation", "SEM image"},
+                       {"output", "Output"},
+                       {"job", "Output"}};
   o->bound.looks["output"] = {.name = "-o,--output"};
   o->bound.add<io::MaterialChoice>(*sub, "");
   o->bound.add<ProfileFiles>(*sub, "");

@@ -2,8 +2,8 @@
 #include "vtkSemsurfReconstruct.h"
 
 #include <fmt/format.h>
-#include <vtkDataArray.h>
 #include <vtkCompositeDataSet.h>
+#include <vtkDataArray.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>

@@ -153,7 +153,9 @@ void describe_known(ParameterVisitor& visit, KnownViews& views) {
       {.name = "reconstruction.view_noise",
        .help = "Noise of each SEM image after the first, as `reconstruction.sem_noise`",
        .form = "SLOPE,INTERCEPT"},
-      [](const SemNoise& n) { return text_of({n.slope, n.intercept, n.least_variance}); },
+      [](const SemNoise& n) {
+        return text_of({n.slope, n.intercept, n.least_variance});
+      },
       [](std::string_view text, const std::string& subject) {
         return read_sem_noise(text, subject);
       });
@@ -163,7 +165,9 @@ void describe_known(ParameterVisitor& visit, KnownViews& views) {
        .help = "Shift of each SEM image after the first in the plane that it sees, in nm, to start "
                "from",
        .form = "X,Y"},
-      [](const Point2& p) { return text_of({p.x, p.y}); },
+      [](const Point2& p) {
+        return text_of({p.x, p.y});
+      },
       [](std::string_view text, const std::string& subject) {
         const std::vector<double> v = numbers_of(text, subject);
         if (v.size() != 2)

@@ -118,8 +118,7 @@ std::vector<ModelCorrection> corrections_at(const HeightField& surface, const Re
                                             const CorrectionRequest& request,
                                             const Reporter& reporter) {
   constexpr std::uint64_t apart = 1000;  // seeds of images, more than there are rounds
-  std::vector<ModelCorrection> out{
-      correction_at(surface, sem.image, *s.model, request, reporter)};
+  std::vector<ModelCorrection> out{correction_at(surface, sem.image, *s.model, request, reporter)};
   for (std::size_t k = 0; k < views.size(); ++k) {
     CorrectionRequest own = request;
     own.seed += apart * (k + 1);
@@ -133,21 +132,17 @@ std::vector<ModelCorrection> corrections_at(const HeightField& surface, const Re
 /// Puts a model right by its correction, at an image whose data were `before`.
 void correct(const ModelCorrection& correction, const SemData& before,
              const std::vector<double>& gains, SemData& sem) {
-  sem.model =
-      std::make_shared<CorrectedModel>(before.model, correction.off, sem.image.placement());
+  sem.model = std::make_shared<CorrectedModel>(before.model, correction.off, sem.image.placement());
   sem.discrepancy = with_errors(before.discrepancy, correction, gains);
 }
 
 }  // namespace
 
-Reconstruction correct_and_reconstruct(const AfmData* afm, SemData& sem,
-                                       std::vector<SemView>& views,
-                                       const ReconstructionOptions& options,
-                                       const ReconstructSummary& summary,
-                                       const CorrectionRequest& request, int rounds,
-                                       ReconstructionCheckpoint* checkpoint,
-                                       const Reporter& reporter,
-                                       std::vector<CorrectionRound>& done) {
+Reconstruction correct_and_reconstruct(
+    const AfmData* afm, SemData& sem, std::vector<SemView>& views,
+    const ReconstructionOptions& options, const ReconstructSummary& summary,
+    const CorrectionRequest& request, int rounds, ReconstructionCheckpoint* checkpoint,
+    const Reporter& reporter, std::vector<CorrectionRound>& done) {
   constexpr double share_of_fits = 0.75;  // of the progress; the uncertainty takes the rest
   Rounds journal(checkpoint);
   const SemData uncorrected = sem;

@@ -11,11 +11,11 @@
 #include "chain_steps.h"
 #include "job_libraries.h"
 #include "profile_output.h"
+#include "profile_signals.h"
+#include "profile_surface.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/plot.h"
-#include "profile_signals.h"
-#include "profile_surface.h"
 #include "wall_signal.h"
 
 namespace surf::workflow {
@@ -24,13 +24,16 @@ namespace {
 constexpr double least_height_nm = 1;
 constexpr double largest_discrepancy = 3;  // over the allowed one
 constexpr double pitch_of_scans = 0.005;   // what scans' heights are calibrated to
-constexpr int more_rounds = 2;     // where a number lies at the border of the last box
-constexpr std::int64_t finer = 4;  // electrons of the last box over those of the others
+constexpr double far_off = 2.5;            // standard errors of what was said
+constexpr int more_rounds = 2;             // where a number lies at the border of the last box
+constexpr std::int64_t finer = 4;          // electrons of the last box over those of the others
 
 /// A quadrant as it lies in an image whose x and y are exchanged.
 std::string transposed(const std::string& signal) {
-  for (const auto& [from, to] : {std::pair("BSE-right", "BSE-top"), {"BSE-left", "BSE-bottom"},
-                                 {"BSE-top", "BSE-right"}, {"BSE-bottom", "BSE-left"}})
+  for (const auto& [from, to] : {std::pair("BSE-right", "BSE-top"),
+                                 {"BSE-left", "BSE-bottom"},
+                                 {"BSE-top", "BSE-right"},
+                                 {"BSE-bottom", "BSE-left"}})
     if (signal == from) return to;
   if (signal != "SE" && signal != "BSE")
     throw UsageError("`profile.along_x`",
@@ -43,8 +46,7 @@ std::string transposed(const std::string& signal) {
 std::vector<ProfileView> views_of(const ProfileJob& job) {
   const auto signals =
       for_each_view(job.view_signals, job.views.size(), job.signal, "`profile.view_signal`");
-  std::vector<ProfileView> out{
-      {job.sem.image.pitch_x_nm, 0, 0, job.energy_ev, job.signal}};
+  std::vector<ProfileView> out{{job.sem.image.pitch_x_nm, 0, 0, job.energy_ev, job.signal}};
   const std::vector<ViewAngles> angles =
       angles_of(job.view_settings, job.views.size(), job.energy_ev);
   for (std::size_t k = 0; k < angles.size(); ++k)
@@ -67,8 +69,7 @@ void check(const ProfileJob& job) {
                      "Say it, as `profile.height=100nm`, or give a scan, as `reconstruction.afm`; "
                      "with tilted views a guess and `profile.height_error` do");
   detectors_of(job.signal, "`profile.signal`");
-  for (const std::string& signal : job.view_signals)
-    detectors_of(signal, "`profile.view_signal`");
+  for (const std::string& signal : job.view_signals) detectors_of(signal, "`profile.view_signal`");
   const std::vector<ProfileView> views = views_of(job);
   if (!job.views.empty() && job.kind == FeatureKind::hole &&
       std::ranges::any_of(views, &ProfileView::one_sided))
@@ -156,6 +157,22 @@ std::vector<std::string> reasons_of(const ProfileJob& job, const ProfileSummary&
     reasons.push_back(
         "width or angle lie at the border of what was simulated: say `profile.angle` nearer to "
         "it, or a wider `profile.angle_range`");
+  const double height_off = std::abs(s.fit.left[profile_height].value - job.height_nm);
+  if (job.height_error_nm > 0 && height_off > far_off * job.height_error_nm)
+    reasons.push_back(fmt::format(
+        "the walls seem {} high, {:.1f} standard errors from what was said: check "
+        "`profile.height`, "
+        "and the tilts and azimuths of further images",
+        format_length(s.fit.left[profile_height].value), height_off / job.height_error_nm));
+  for (std::size_t k = 1; k < s.fit.sights.size(); ++k) {
+    const double told = angles_of(job.view_settings, job.views.size(), 0)[k - 1].tilt_deg,
+                 off = std::abs(s.fit.sights[k].tilt_deg.value - told);
+    if (off > far_off * job.view_settings.tilt_error_deg)
+      reasons.push_back(fmt::format(
+          "view {} seems tilted by {:.2f} degrees, not {:g}: check `beam.tilt` and, where it is of "
+          "the other side, `beam.azimuth`",
+          k + 1, s.fit.sights[k].tilt_deg.value, told));
+  }
   for (std::size_t k = 0; k < s.fit.sights.size(); ++k) {
     const double off = s.fit.sights[k].discrepancy_share;
     if (job.model_error > 0 && off > largest_discrepancy * job.model_error)
@@ -192,8 +209,8 @@ void find_height(ProfileJob& job, ProfileSummary& s, const Reporter& reporter) {
                        "Say `profile.height`, or give a scan of these features");
   job.height_nm = height.value;
   job.height_error_nm = s.scan_height_nm->standard_error;
-  reporter.note(fmt::format("height by the scan: {:.2f} ± {:.2f} nm", job.height_nm,
-                            job.height_error_nm));
+  reporter.note(
+      fmt::format("height by the scan: {:.2f} ± {:.2f} nm", job.height_nm, job.height_error_nm));
 }
 
 }  // namespace
@@ -235,8 +252,8 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
       hole.radius_nm = nearest->place_nm;
       sights.push_back({profile_data(view, hole, nearest->to_nm)});
     } else {
-      sights.push_back(sight_of(job, view, views[k + 1],
-                                find_edges(view, job.kind, job.threshold).edges));
+      sights.push_back(
+          sight_of(job, view, views[k + 1], find_edges(view, job.kind, job.threshold).edges));
     }
   }
   s.threshold_widths_nm = threshold_widths(s.threshold, job.kind);
@@ -269,10 +286,10 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
       const auto part = [&](std::size_t i) {
         return static_cast<double>(i) / static_cast<double>(views.size());
       };
-      signals.push_back(simulate_signals(
-          job, views[k], box, s.pitch_nm, (last ? finer : 1) * job.electrons,
-          job.seed + static_cast<std::uint64_t>(round) * 1000, round == 0 && !last, libraries,
-          reporter.watch().part(part(k), part(k + 1))));
+      signals.push_back(
+          simulate_signals(job, views[k], box, s.pitch_nm, (last ? finer : 1) * job.electrons,
+                           job.seed + static_cast<std::uint64_t>(round) * 1000, round == 0 && !last,
+                           libraries, reporter.watch().part(part(k), part(k + 1))));
       s.simulated += static_cast<std::int64_t>(signals.back().left.shapes.size() +
                                                signals.back().right.shapes.size());
     }

@@ -39,11 +39,12 @@ void describe(ParameterVisitor& visit, ProfileJob& job) {
       });
   visit(job.along_x, {.name = "profile.along_x", .help = "Lines run along x, not along y"});
   std::optional<double> height = job.height_nm > 0 ? std::optional(job.height_nm) : std::nullopt;
-  visit(height, {.name = "profile.height",
-                 .help = "Height of the walls, which no upright view shows; with tilted views a guess",
-                 .unit = Unit::nm,
-                 .limits = within(1, 100'000),
-                 .otherwise = "as the scan shows"});
+  visit(height,
+        {.name = "profile.height",
+         .help = "Height of the walls, which no upright view shows; with tilted views a guess",
+         .unit = Unit::nm,
+         .limits = within(1, 100'000),
+         .otherwise = "as the scan shows"});
   job.height_nm = height.value_or(0);
   visit(job.height_error_nm, {.name = "profile.height_error",
                               .help = "Standard error of this height",

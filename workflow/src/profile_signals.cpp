@@ -19,8 +19,8 @@ namespace surf::workflow {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-constexpr double width_range = 0.08;    // half of the box, of the width
-constexpr double most_beside_nm = 250;  // of ground and top that is simulated
+constexpr double width_range = 0.08;     // half of the box, of the width
+constexpr double most_beside_nm = 250;   // of ground and top that is simulated
 constexpr double largest_corner = 0.35;  // of the height
 constexpr std::size_t cascades = 40960;
 constexpr double matched = 0.5;    // the box about the best match, over the first
@@ -76,7 +76,8 @@ WallSimulation simulation_of(const ProfileJob& job, const ProfileView& view, con
   beam.energy_ev = view.energy_ev;
   beam.spot_nm = job.spot_nm;
   const double reach = mc::reach_nm(mc::make_medium(job.material, job.physics), beam);
-  const double aside = std::sin(view.tilt_deg * degree) * std::abs(std::cos(view.azimuth_deg * degree));
+  const double aside =
+      std::sin(view.tilt_deg * degree) * std::abs(std::cos(view.azimuth_deg * degree));
   double wall = 0;  // as far as the box's flattest goes from its middle
   for (const ProfileNumbers& n : profile_design(box))
     wall = std::max(wall, 0.5 * n[profile_height] / std::tan(n[profile_angle] * degree) +

@@ -60,8 +60,8 @@ struct Signals {
 };
 
 /// Of the walls with the ground at their left, and at their right: by the same random numbers, so
-/// that they differ by their shapes alone, on the level of the middle one's by many more. Where both
-/// walls give one signal, the second is empty. `coarse`: at half the places.
+/// that they differ by their shapes alone, on the level of the middle one's by many more. Where
+/// both walls give one signal, the second is empty. `coarse`: at half the places.
 struct WallSignals {
   Signals left, right;
 };

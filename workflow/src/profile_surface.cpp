@@ -61,9 +61,9 @@ struct WallDoubt {
 
   double deviation(double u, double place_error) const {
     constexpr double step = 0.25;
-    const double z = middle.at(u),
-                 slope = std::max(std::abs(middle.at(u + step) - z), std::abs(z - middle.at(u - step))) /
-                         step;
+    const double z = middle.at(u), slope = std::max(std::abs(middle.at(u + step) - z),
+                                                    std::abs(z - middle.at(u - step))) /
+                                           step;
     double variance = slope * place_error * slope * place_error;
     for (const WallHeight& other : moved) variance += std::pow(other.at(u) - z, 2);
     return std::sqrt(variance);
@@ -126,7 +126,8 @@ Measured wall_height(const HeightField& scan) {
   std::vector<double> sorted;
   for (std::size_t i = 0; i < scan.z_nm.size(); ++i)
     if (scan.valid.includes(i)) sorted.push_back(scan.z_nm.data()[i]);
-  if (sorted.size() < 64) throw InvalidInput("AFM scan", "it has hardly any samples", "Give another");
+  if (sorted.size() < 64)
+    throw InvalidInput("AFM scan", "it has hardly any samples", "Give another");
   std::ranges::sort(sorted);
   const auto at = [&](double share) {
     return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];

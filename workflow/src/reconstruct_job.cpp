@@ -382,13 +382,11 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
     if (afm && !all_known(job.known_views))
       coarse = reconstruct(&*afm, &*sem, coarse_options(job, s, s.gains_tied));
     views = prepare_views(job, s, *sem, coarse ? &coarse->surface : nullptr, told);
-    if (const auto strange = std::ranges::find(s.views, false, &PreparedView::explained);
-        strange != s.views.end() && !job.pose.accept_unverified) {
+    for (std::size_t k = 0; k < s.views.size(); ++k)
+      if (!s.views[k].doubt.empty() && !job.pose.accept_unverified)
+        s.reasons.push_back(fmt::format("view {}: {}", k + 2, s.views[k].doubt));
+    if (!s.reasons.empty()) {
       s.verdict = ReconstructionVerdict::not_registered;
-      s.reasons = {fmt::format(
-          "view {} has nothing in common with what the surface looks like from there (correlation "
-          "{:.2f}): is it of the same place, and are tilt and azimuth right?",
-          strange - s.views.begin() + 2, strange->correlation)};
       return s;
     }
   }

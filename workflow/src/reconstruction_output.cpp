@@ -10,7 +10,6 @@
 
 #include "reconstruction_panel.h"
 #include "reconstruction_report.h"
-#include "view_preparation.h"
 #include "surf/core/units.h"
 #include "surf/io/files.h"
 #include "surf/io/height_field_file.h"
@@ -22,6 +21,7 @@
 #include "surf/io/transform_file.h"
 #include "surf/mesh/height_field_mesh.h"
 #include "surf/workflow/step_record.h"
+#include "view_preparation.h"
 
 namespace surf::workflow {
 namespace {
@@ -152,10 +152,10 @@ Image view_image(const ViewResult& r, const SemView& view, const Metadata& made)
   Image image = placed_like(view.sem.image, made);
   image.metadata["beam.tilt_deg"] = format_exact(r.pose.tilt_deg);
   image.metadata["beam.azimuth_deg"] = format_exact(r.pose.azimuth_deg);
-  image.channels = {
-      channel("simulated", "1", r.simulated), channel("sem", "1", view.sem.image.values),
-      channel("residual", "1", r.residual), channel("used", "1", r.used),
-      valid_channel(view.sem.image.valid, r.simulated.width(), r.simulated.height())};
+  image.channels = {channel("simulated", "1", r.simulated),
+                    channel("sem", "1", view.sem.image.values),
+                    channel("residual", "1", r.residual), channel("used", "1", r.used),
+                    valid_channel(view.sem.image.valid, r.simulated.width(), r.simulated.height())};
   return image;
 }
 

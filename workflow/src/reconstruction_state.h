@@ -10,8 +10,8 @@
 
 namespace surf::workflow {
 
-/// Serialize a state or the corrections of a round, and read them back. `unpack` returns nothing for bytes that
-/// are not of that kind.
+/// Serialize a state or the corrections of a round, and read them back. `unpack` returns nothing
+/// for bytes that are not of that kind.
 std::string pack(const ReconstructionState& state);
 std::string pack(const std::vector<ModelCorrection>& corrections);
 std::optional<ReconstructionState> unpack(const std::string& bytes);

@@ -15,8 +15,9 @@
 namespace surf::workflow {
 namespace {
 
-constexpr double least_correlation = 0.3;   // of a view with what the surface looks like from there
-constexpr double as_good = 0.02;            // correlations that differ by less are alike
+constexpr double least_correlation = 0.3;  // of a view with what the surface looks like from there
+constexpr double as_good = 0.02;           // correlations that differ by less are alike
+constexpr double clearly_other = 0.1;      // of Fisher's transform of correlations
 
 std::string count_of(std::size_t views) {
   return views == 1 ? "1 further SEM image" : fmt::format("{} further SEM images", views);
@@ -53,6 +54,22 @@ PlacedImage predicted(const HeightField& surface, const PlacedImage& view, const
       whole.values.data()[i] += gains[c] * images[c].data()[i];
   whole.valid = along.valid;
   return whole;
+}
+
+std::string doubt_of(const PreparedView& view) {
+  if (view.correlation < least_correlation)
+    return fmt::format(
+        "it has nothing in common with what the surface looks like from there (correlation "
+        "{:.2f}): is it of the same place, and are tilt and azimuth right?",
+        view.correlation);
+  // Fisher's transform: differences of correlations near 1 count for more.
+  if (std::atanh(std::min(view.other_side, 0.9999)) >
+      std::atanh(std::min(view.correlation, 0.9999)) + clearly_other)
+    return fmt::format(
+        "it looks as a beam sees the surface that is tilted to the other side (correlation {:.2f}, "
+        "and {:.2f} as told): is `beam.azimuth` off by 180 degrees?",
+        view.other_side, view.correlation);
+  return {};
 }
 
 /// Of shifts that agree as well, the one nearest to where the images' frames say: gratings look
@@ -105,8 +122,8 @@ std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary
   begin(told, "views");
   const KnownViews& settings = job.known_views;
   const std::vector<ViewAngles> angles = angles_of(job.view_settings, views, 0);
-  const auto models = for_each_view(settings.models, views, std::filesystem::path(),
-                                    "`reconstruction.view_model`");
+  const auto models =
+      for_each_view(settings.models, views, std::filesystem::path(), "`reconstruction.view_model`");
   const int threads = job.options.threads;
   for (std::size_t k = 0; k < views; ++k) {
     PreparedView found;
@@ -139,7 +156,13 @@ std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary
       shift.x_nm = settings.places_nm[k].x, shift.y_nm = settings.places_nm[k].y;
     found.shift_x_nm = shift.x_nm, found.shift_y_nm = shift.y_nm;
     found.correlation = shift.correlation;
-    found.explained = !settings.places_nm.empty() || shift.correlation >= least_correlation;
+    if (surface && found.tilt_deg > 0) {
+      const ViewPose mirrored{found.tilt_deg, found.azimuth_deg + 180, {}};
+      const std::vector<ImageShift> others =
+          find_shifts(predicted(*surface, image, mirrored, model, gains, threads), image);
+      if (!others.empty()) found.other_side = others.front().correlation;
+    }
+    if (settings.places_nm.empty()) found.doubt = doubt_of(found);
     view.pose.to_plane = {1, 0, shift.x_nm, 0, 1, shift.y_nm};
 
     std::optional<GivenCalibration> given;
@@ -172,7 +195,12 @@ std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary
         seen.valid.data()[i] = seen.valid.data()[i] && along.valid.data()[i];
       calibrate_again(seen, whole, model, given.has_value(), noise.has_value(), threads, first);
     }
-    view.sem = {image, found.model.model, first.gains, first.offset, first.noise, {},
+    view.sem = {image,
+                found.model.model,
+                first.gains,
+                first.offset,
+                first.noise,
+                {},
                 usual_discrepancy(image, job.model_error)};
     found.gains = first.gains, found.offset = first.offset;
     found.noise = first.noise, found.noise_from = first.noise_from;

@@ -11,13 +11,12 @@
 namespace surf::workflow {
 
 void refuse_length(std::size_t given, std::size_t views, const std::string& subject) {
-  throw UsageError(
-      subject,
-      fmt::format("{} values are given, and there {}", given,
-                  views == 0   ? "is one SEM image only"
-                  : views == 1 ? "is 1 further SEM image"
-                               : fmt::format("are {} further SEM images", views)),
-      "Give one for each SEM image in turn, or one for each after the first");
+  throw UsageError(subject,
+                   fmt::format("{} values are given, and there {}", given,
+                               views == 0   ? "is one SEM image only"
+                               : views == 1 ? "is 1 further SEM image"
+                                            : fmt::format("are {} further SEM images", views)),
+                   "Give one for each SEM image in turn, or one for each after the first");
 }
 
 void describe(ParameterVisitor& visit, ViewSettings& views) {

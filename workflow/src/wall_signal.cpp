@@ -55,8 +55,8 @@ WallSignal simulate_wall(const FeatureShape& shape, const WallSimulation& how,
   const double half = shape.kind == FeatureKind::edge ? 0 : 0.5 * shape.width_nm,
                wall = how.left ? -half : half, middle_u = 0.5 * (how.first_u_nm + last_u);
   const BeamAxes axes = beam_axes(how.tilt_deg, how.azimuth_deg);
-  const Vec3 middle = Vec3{wall, 0, 0.5 * shape.wall.height_nm} +
-                      axes.across * (smaller ? -middle_u : middle_u);
+  const Vec3 middle =
+      Vec3{wall, 0, 0.5 * shape.wall.height_nm} + axes.across * (smaller ? -middle_u : middle_u);
   scan.center_x_nm = middle.x, scan.center_y_nm = middle.y;
   if (how.tilt_deg > 0) scan.center_z_nm = middle.z;
   mc::SimulationOptions options;

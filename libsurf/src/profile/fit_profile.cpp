@@ -78,9 +78,8 @@ class Fit {
   static bool one_side_only(const std::vector<ProfileSight>& sights) {
     const auto right = [](const ImageEdge& e) { return e.material_right; };
     const auto all = [&](auto holds) {
-      return std::ranges::all_of(sights, [&](const ProfileSight& s) {
-        return std::ranges::all_of(s.data.edges, holds);
-      });
+      return std::ranges::all_of(
+          sights, [&](const ProfileSight& s) { return std::ranges::all_of(s.data.edges, holds); });
     };
     return all(right) || all([&](const ImageEdge& e) { return !right(e); });
   }
@@ -185,8 +184,8 @@ class Fit {
         wall[k].standard_error = std::sqrt(std::max(known(i, i), 0.0));
         // What is known beforehand may lie there: the library's box is its prior's.
         if (std::isfinite(options_.prior_deviation[k])) continue;
-        out.at_border = out.at_border || std::abs(wall[k].value - box_.middle[k]) >
-                                             beyond_box * box_.half[k] - 1e-9;
+        out.at_border = out.at_border ||
+                        std::abs(wall[k].value - box_.middle[k]) > beyond_box * box_.half[k] - 1e-9;
       }
     }
     for (SightOfWalls& sight : sights_) sight.place_rows(walls_);

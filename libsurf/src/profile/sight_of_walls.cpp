@@ -35,9 +35,10 @@ SightOfWalls::SightOfWalls(const ProfileSight& sight, const ProfileFitOptions& o
   const ProfileLibrary& l = *sight.left;
   const double range_nm = l.last_u_nm() - l.first_u_nm();
   near_bumps_ = 1 + static_cast<int>(std::ceil(range_nm / options.model_error_nm));
-  bumps_.assign(static_cast<std::size_t>(near_bumps_ + 1) +
-                    static_cast<std::size_t>(std::ceil(range_nm / (farther * options.model_error_nm))),
-                0);
+  bumps_.assign(
+      static_cast<std::size_t>(near_bumps_ + 1) +
+          static_cast<std::size_t>(std::ceil(range_nm / (farther * options.model_error_nm))),
+      0);
   const auto rows = static_cast<std::size_t>(sight.data.rows);
   for (const ImageEdge& e : sight.data.edges) {
     places_.emplace_back(rows, e.place_nm);
@@ -87,8 +88,7 @@ SightOfWalls::Bump SightOfWalls::bump_at(double u) const {
     return std::pair(first, at - first);
   };
   const auto [near, near_share] = among(options_->model_error_nm, near_bumps_);
-  const auto [far, far_share] =
-      among(farther * options_->model_error_nm, bumps() - near_bumps_);
+  const auto [far, far_share] = among(farther * options_->model_error_nm, bumps() - near_bumps_);
   return {{near, near + 1, near_bumps_ + far, near_bumps_ + far + 1},
           {1 - near_share, near_share, 1 - far_share, far_share}};
 }
@@ -267,8 +267,7 @@ void SightOfWalls::place_rows(const Walls& walls) {
       const ImageEdge& edge = edge_of(s);
       const int side = side_of(edge);
       const double u = sign_of(edge) * (s.x_nm - raw_[e][r]);
-      const ProfileLibrary::Value v =
-          library(side).at(u, numbers[static_cast<std::size_t>(side)]);
+      const ProfileLibrary::Value v = library(side).at(u, numbers[static_cast<std::size_t>(side)]);
       const double m = model(v, u), variance = variance_of(m),
                    slope = -sign_of(edge) * gain_ * v.by_u;
       pull[e][r] += slope * (s.value - m) / variance;

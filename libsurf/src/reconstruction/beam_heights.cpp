@@ -21,7 +21,7 @@ BeamAxes beam_axes(double tilt_deg, double azimuth_deg) {
 namespace reconstruction {
 namespace {
 
-constexpr double step_px = 0.5;      // along the surface, in search of what a beam meets first
+constexpr double step_px = 0.5;        // along the surface, in search of what a beam meets first
 constexpr double least_facing = 0.05;  // a beam that grazes a wall would make any change of it huge
 
 struct Tilt {
@@ -172,8 +172,7 @@ Grid<double> BeamHeights::change(const Grid<double>& dz) const {
   for (int y = 0; y < view_.height; ++y)
     for (int x = 0; x < view_.width; ++x) {
       const Hit& h = hits_(x, y);
-      out(x, y) =
-          h.rise * CubicSample(h.at.x, h.at.y, surface_.width, surface_.height).value(dz);
+      out(x, y) = h.rise * CubicSample(h.at.x, h.at.y, surface_.width, surface_.height).value(dz);
     }
   return out;
 }

@@ -41,8 +41,8 @@ class BeamHeights {
  private:
   struct Hit {
     Point2 at;
-    double rise = 0;                    // of the height along the beam, per rise of the surface
-    double across = 0, up = 0;          // derivatives by the point of the plane
+    double rise = 0;                      // of the height along the beam, per rise of the surface
+    double across = 0, up = 0;            // derivatives by the point of the plane
     double by_tilt_x = 0, by_tilt_y = 0;  // and by the beam's turn, per degree
   };
   /// Adds the changes of the height along the beam with each number of the pose.

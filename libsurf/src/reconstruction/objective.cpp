@@ -89,8 +89,8 @@ Objective::State Objective::evaluate(const Unknowns& at) const {
 }
 
 Step Objective::zero() const {
-  return {Grid<double>(frame.width, frame.height), {}, {}, {},
-          std::vector<ViewChange>(views.size())};
+  return {
+      Grid<double>(frame.width, frame.height), {}, {}, {}, std::vector<ViewChange>(views.size())};
 }
 
 Objective::Near Objective::near(const Unknowns& at, const State& s) const {
@@ -133,16 +133,15 @@ Step Objective::gradient(const Unknowns& at, const State& s) const {
   return g;
 }
 
-Step Objective::product(const Unknowns& at, const State& s, const Step& v,
-                        const Near* near) const {
+Step Objective::product(const Unknowns& at, const State& s, const Step& v, const Near* near) const {
   Step out = zero();
   if (afm)
     afm->add_gradient(*s.afm, at.z_nm,
                       afm->precision(afm->change(*s.afm, at.z_nm, v.z_nm, v.map, v.tip)), out.z_nm,
                       fit_map ? &out.map : nullptr, fit_tip ? &out.tip : nullptr);
   if (sem) {
-    const Grid<double> change =
-        sem->precision(*s.sem, sem->change(*s.sem, at.mixture, v.z_nm, v.mixture, near ? &near->sem : nullptr));
+    const Grid<double> change = sem->precision(
+        *s.sem, sem->change(*s.sem, at.mixture, v.z_nm, v.mixture, near ? &near->sem : nullptr));
     sem->add_gradient(*s.sem, at.mixture, change, near ? &near->sem : nullptr, out.z_nm,
                       fits_mixture() ? &out.mixture : nullptr);
   }

@@ -51,8 +51,8 @@ class ViewTerm {
   /// Second derivatives by the view's numbers alone, the pose's first, with the prior; those of the
   /// mixture only if `mixture` (gains and offset) are fitted, else 1.
   static constexpr int numbers = pose_numbers + 2;
-  std::array<std::array<double, numbers>, numbers> block(const State& state,
-                                                         const ViewUnknowns& at, bool mixture,
+  std::array<std::array<double, numbers>, numbers> block(const State& state, const ViewUnknowns& at,
+                                                         bool mixture,
                                                          const SemTerm::Near* near) const;
 
   ViewUnknowns moved(const ViewUnknowns& at, const ViewChange& by, bool mixture) const;

@@ -11,8 +11,7 @@ namespace {
 
 MaskedGrid masked(const PlacedImage& image) {
   return sampled(
-      image.values.width(), image.values.height(),
-      [&](int x, int y) { return image.values(x, y); },
+      image.values.width(), image.values.height(), [&](int x, int y) { return image.values(x, y); },
       [&](int x, int y) { return image.is_valid(x, y); });
 }
 

@@ -224,9 +224,9 @@ TEST(FitProfile, ATiltedImageTellsTheHeightAndItsTiltIsFitted) {
     for (int y = 0; y < 128; ++y)
       for (int x = 0; x < 90; ++x) {
         const double at = x * pixel - 91.3, u = 0.5 * real[profile_width] - std::abs(at);
-        image.values(x, y) = 100 * flank_signal(std::clamp(u, -35.0, 35.0), real,
-                                                at < 0 ? tilted : -tilted) +
-                             20 + 8 * normal();
+        image.values(x, y) =
+            100 * flank_signal(std::clamp(u, -35.0, 35.0), real, at < 0 ? tilted : -tilted) + 20 +
+            8 * normal();
       }
     return image;
   };
@@ -238,8 +238,12 @@ TEST(FitProfile, ATiltedImageTellsTheHeightAndItsTiltIsFitted) {
   const auto sight = [&](double tilted, std::uint64_t seed, const ProfileLibrary& l,
                          const ProfileLibrary& r) {
     const PlacedImage image = image_at(tilted, seed);
-    return ProfileSight{profile_data(image, find_edges(image, FeatureKind::line).edges), &l, &r,
-                        tilted > 0 ? wrong : 0.0, 0, tilted > 0 ? 0.3 : 0.0};
+    return ProfileSight{profile_data(image, find_edges(image, FeatureKind::line).edges),
+                        &l,
+                        &r,
+                        tilted > 0 ? wrong : 0.0,
+                        0,
+                        tilted > 0 ? 0.3 : 0.0};
   };
   const ProfileSight above = sight(0, 1, up, up), aside = sight(tilt, 2, left, right);
   const ProfileFit one = fit_profile({above}, o), two = fit_profile({above, aside}, o);

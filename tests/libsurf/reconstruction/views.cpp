@@ -108,12 +108,10 @@ TEST(BeamHeights, DerivativesAreThoseOfDifferences) {
   for (int k = 0; k < pose_numbers; ++k) {
     PoseChange one{}, more{}, less{};
     one[k] = 1, more[k] = step, less[k] = -step;
-    const Grid<double> by = seen.change(one),
-                       after = BeamHeights(ground, z, changed(some_pose, seen_on, more), seen_on, 1)
-                                   .heights(),
-                       before =
-                           BeamHeights(ground, z, changed(some_pose, seen_on, less), seen_on, 1)
-                               .heights();
+    const Grid<double>
+        by = seen.change(one),
+        after = BeamHeights(ground, z, changed(some_pose, seen_on, more), seen_on, 1).heights(),
+        before = BeamHeights(ground, z, changed(some_pose, seen_on, less), seen_on, 1).heights();
     for (std::size_t i = 0; i < by.size(); ++i)
       EXPECT_NEAR(by.data()[i], (after.data()[i] - before.data()[i]) / (2 * step),
                   1e-4 * (1 + largest(by)))
@@ -151,8 +149,8 @@ SemView view_of(const test::SmallScene& scene, const ViewPose& pose, std::uint64
   HeightField along = scene.truth;
   for (int y = 0; y < along.z_nm.height(); ++y)
     for (int x = 0; x < along.z_nm.width(); ++x)
-      along.z_nm(x, y) = met(test::small_height, pose,
-                             pose.to_plane({along.x_nm(x), along.y_nm(y)}), 120);
+      along.z_nm(x, y) =
+          met(test::small_height, pose, pose.to_plane({along.x_nm(x), along.y_nm(y)}), 120);
   view.sem.image.values = scene.sem.model->predict(along)[0];
   NormalNumbers normal(seed, 7);
   for (double& v : view.sem.image.values.data()) {

@@ -51,8 +51,8 @@ struct ViewResult {
   ViewPose pose;              ///< fitted
   std::vector<double> gains;  ///< fitted
   double offset = 0;
-  Grid<double> simulated;  ///< on the view's pixels
-  Grid<double> residual;   ///< whitened, with the discrepancy taken off
+  Grid<double> simulated;    ///< on the view's pixels
+  Grid<double> residual;     ///< whitened, with the discrepancy taken off
   Grid<unsigned char> used;  ///< 1: the pixel contributes
   ResidualReport statistics;
   double discrepancy_share = 0;  ///< see Reconstruction

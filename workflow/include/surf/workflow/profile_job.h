@@ -27,7 +27,7 @@ struct ProfileJob {
   std::optional<HeightField> scan;        ///< an AFM scan that shows how high walls are
   std::filesystem::path scan_file;
   FeatureKind kind = FeatureKind::line;
-  bool along_x = false;            ///< lines run along x, not y
+  bool along_x = false;  ///< lines run along x, not y
   /// Of the walls, and its standard error; 0: by the scan. Required without one, because no
   /// upright view shows it: with tilted views a guess and a wide error do.
   double height_nm = 0, height_error_nm = 0;
@@ -63,8 +63,8 @@ struct ProfileSummary {
   std::optional<Measured> measured_pitch_nm;  ///< mean distance of features in the image
   std::optional<Measured> scan_height_nm;     ///< by the scan
   ProfileFit fit;
-  HeightField surface;          ///< of that shape, with the edges of each row, on the image's pixels
-  Grid<double> deviation_nm;    ///< standard deviation of its heights
+  HeightField surface;        ///< of that shape, with the edges of each row, on the image's pixels
+  Grid<double> deviation_nm;  ///< standard deviation of its heights
   double discrepancy_share = 0;      ///< what the simulation is off by, over the contrast; the most
   std::int64_t simulated = 0;        ///< profiles
   std::vector<std::string> reasons;  ///< why the result is not to be trusted; none: it is
@@ -73,7 +73,8 @@ struct ProfileSummary {
 
 /// Finds the edges, simulates profiles of shapes around a first guess, fits shape and edges, and
 /// does so again about what was found. Writes profile.json, edges.csv, profiles.csv, spectrum.csv,
-/// surface.gsf, surface.vti and panel.png to the folder. Throws UsageError, InvalidInput, FileError, Interrupted.
+/// surface.gsf, surface.vti and panel.png to the folder. Throws UsageError, InvalidInput,
+/// FileError, Interrupted.
 ProfileSummary run(const ProfileJob& job, const Reporter& reporter = {});
 
 }  // namespace surf::workflow

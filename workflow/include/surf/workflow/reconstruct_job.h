@@ -120,15 +120,16 @@ struct RivalSurface {
 /// A further SEM image, before the fit.
 struct PreparedView {
   StoredModel model;
-  double tilt_deg = 0, azimuth_deg = 0;  ///< as given
+  double tilt_deg = 0, azimuth_deg = 0;   ///< as given
   double shift_x_nm = 0, shift_y_nm = 0;  ///< of its frame in the plane that it sees, as found
   double correlation = 0;                 ///< of the image with what the surface would look like
+  double other_side = 0;  ///< the same of a beam that is tilted to the other side; 0: not looked at
   std::vector<double> gains;
   double offset = 0;
   SemNoise noise;
   std::string noise_from;
   std::int64_t saturated = 0;
-  bool explained = true;  ///< it is of the same place, as far as its image tells
+  std::string doubt;  ///< why the image cannot be of this place from this side; empty: it can
 };
 
 enum class ReconstructionVerdict {
