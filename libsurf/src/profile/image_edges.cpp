@@ -121,7 +121,15 @@ struct Rim {
   bool material_right;
 };
 
-/// Rims, and on which side of each the material is: the ground beside a wall is darker.
+/// Whether the image ends within some reaches of a rim, so that it hardly shows what lies beside
+/// it.
+bool cut_off(int top, const std::vector<double>& y, double reaches) {
+  const double seen = reaches * rim_reach_px;
+  return top <= seen || top >= static_cast<double>(y.size()) - 1 - seen;
+}
+
+/// Rims, and on which side of each the material is: the ground beside a wall is darker. Material
+/// and ground take turns, which tells the sides of rims at the image's ends.
 std::vector<Rim> rims_of(const std::vector<double>& y) {
   const std::vector<int> tops = rims(y);
   std::vector<Rim> out;
@@ -132,12 +140,21 @@ std::vector<Rim> rims_of(const std::vector<double>& y) {
     out.push_back(
         {tops[i], left, right, level_beside(y, tops[i], left) < level_beside(y, tops[i], right)});
   }
+  if (out.size() > 1) {
+    Rim &first = out.front(), &last = out.back();
+    if (cut_off(first.top, y, 2)) first.material_right = !out[1].material_right;
+    if (cut_off(last.top, y, 2)) last.material_right = !out[out.size() - 2].material_right;
+  }
   return out;
 }
 
 /// Rims by feature: a pair around material or a gap, or one of edges.
-std::vector<std::vector<Rim>> features_of(const std::vector<Rim>& rims, FeatureKind kind) {
+std::vector<std::vector<Rim>> features_of(const std::vector<Rim>& all, FeatureKind kind,
+                                          const std::vector<double>& y) {
   std::vector<std::vector<Rim>> out;
+  std::vector<Rim> rims;
+  for (const Rim& r : all)
+    if (!cut_off(r.top, y, 1)) rims.push_back(r);
   if (kind == FeatureKind::edge || kind == FeatureKind::hole) {
     for (const Rim& r : rims) out.push_back({r});
     return out;
@@ -177,7 +194,7 @@ ThresholdEdges find_edges(const PlacedImage& image, FeatureKind kind, double thr
   ThresholdEdges out;
   std::vector<Flank> flanks;
   const std::vector<Rim> rims = rims_of(mean);
-  const auto features = features_of(rims, kind);
+  const auto features = features_of(rims, kind, mean);
   if (kind == FeatureKind::line || kind == FeatureKind::trench)
     out.pitch_nm = image.pitch_x_nm * pitch_of(rims, mean, threshold);
   for (std::size_t f = 0; f < features.size(); ++f)

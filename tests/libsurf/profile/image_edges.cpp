@@ -63,6 +63,13 @@ TEST(ImageEdges, ThePitchIsSeenWhereOneLineAloneIsWhole) {
   const ThresholdEdges one = find_edges(part, FeatureKind::line);
   EXPECT_EQ(one.edges.size(), 2u);
   EXPECT_NEAR(one.pitch_nm, 170, 0.5);
+  // From the first line's left rim to the last one's: what lies beside them is not seen.
+  for (const int from : {20, 21, 22, 23}) {
+    part.values = Grid<double>(152 - from, 20);
+    for (int y = 0; y < 20; ++y)
+      for (int x = 0; x < part.values.width(); ++x) part.values(x, y) = image.values(x + from, y);
+    EXPECT_NEAR(find_edges(part, FeatureKind::trench).pitch_nm, 170, 2) << from;
+  }
   part.values = Grid<double>(70, 20);  // one line, nothing else
   for (int y = 0; y < 20; ++y)
     for (int x = 0; x < 70; ++x) part.values(x, y) = image.values(x + 95, y);
