@@ -26,7 +26,7 @@ void describe(ParameterVisitor& visit, ViewSettings& views) {
                             "each after the first, whose is 0",
                     .unit = Unit::deg,
                     .limits = within(0, largest_view_tilt_deg),
-                    .otherwise = "0deg",
+                    .otherwise = "straight down",
                     .form = "ANGLE"});
   describe_numbers(visit, views.azimuths_deg,
                    {.name = "beam.azimuth",
@@ -34,7 +34,7 @@ void describe(ParameterVisitor& visit, ViewSettings& views) {
                             "after the first: 0 is +x, 90deg is +y",
                     .unit = Unit::deg,
                     .limits = within(-360, 360),
-                    .otherwise = "0deg",
+                    .otherwise = "to +x",
                     .form = "ANGLE"});
   describe_numbers(visit, views.energies_ev,
                    {.name = "reconstruction.view_energy",
