@@ -179,7 +179,7 @@ io::PlotPanel profile_panel(const ProfileJob& job, const ProfileSummary& s, std:
                            : fmt::format("mean profile of view {}, tilted by {:.2f}°", sight + 1,
                                          s.fit.sights[sight].tilt_deg.value);
   const std::vector<MeanProfile>& profiles = s.fit.sights[sight].profiles;
-  panel.x.label = "distance from the middle of the wall, material to the right (nm)";
+  panel.x.label = "from the wall's middle, material to the right (nm)";
   panel.y.label = "signal";
   for (std::size_t p = 0; p < profiles.size(); ++p) {
     const MeanProfile& m = profiles[p];

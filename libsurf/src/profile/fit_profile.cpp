@@ -14,6 +14,8 @@ namespace {
 
 constexpr int most_rounds = 12, steps_per_round = 4;
 constexpr double settled_nm = 0.02;
+constexpr double hardly_told =
+    0.1;  // heights and radii, known to nanometres, settle ten times as coarsely
 constexpr double beyond_box = 1.2;  // of the box's half sizes: further away no quadratic holds
 
 class Fit {
@@ -64,7 +66,8 @@ class Fit {
       for (std::size_t k = 0; k < profile_numbers; ++k)
         for (std::size_t side = 0; side < 2; ++side)
           if (box_.half[k] > 0)
-            moved = std::max(moved, std::abs(walls_[side][k] - walls_before[side][k]));
+            moved = std::max(moved, (k == profile_width || k == profile_angle ? 1 : hardly_told) *
+                                        std::abs(walls_[side][k] - walls_before[side][k]));
       converged = round > 1 && moved < settled_nm;
     }
     for (int step = 0; step < steps_per_round; ++step) {
