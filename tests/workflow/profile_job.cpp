@@ -24,13 +24,14 @@ constexpr double energy_ev = 300, pixel_nm = 2, gain = 500, offset = 40;
 /// Lines of silicon, 40 nm wide and 30 nm high, at 300 eV.
 class ProfileJobTest : public testing::Test {
  protected:
-  static PlacedImage lines(double angle_deg) {
+  static PlacedImage lines(double angle_deg, double tilt_deg = 0) {
     const FeatureShape shape{FeatureKind::line, 40, 100, {30, angle_deg, 2, 2}};
     mc::Specimen specimen;
     specimen.materials = {io::find_material("Si", "test")};
     specimen.bodies.push_back({"lines", feature_mesh(shape, 400), 0});
     mc::Beam beam;
     beam.energy_ev = energy_ev;
+    beam.tilt_deg = tilt_deg;
     mc::Scan scan;
     scan.width = 90;
     scan.height = 24;
@@ -218,6 +219,20 @@ TEST_F(ProfileJobTest, LeftAndRightAreTheFeaturesOwn) {
   for (const FittedEdge& e : s.fit.edges())
     EXPECT_EQ(e.edge.material_right, e.place_nm.value > 45 + 4 || e.place_nm.value < -40)
         << e.place_nm.value;
+}
+
+TEST_F(ProfileJobTest, SaysThatABeamWasTiltedToTheOtherSide) {
+  job_.electrons = 40, job_.middle_electrons = 600;
+  job_.rounds = 2;
+  job_.folder.clear();
+  job_.views.resize(1);
+  job_.views[0].image = lines(84, 12);
+  job_.view_settings.tilts_deg = {12};
+  EXPECT_FALSE(run(job_).other_side);
+  job_.view_settings.azimuths_deg = {180};
+  const ProfileSummary s = run(job_);
+  EXPECT_TRUE(s.other_side);
+  EXPECT_THAT(s.reasons, testing::Contains(HasSubstr("beam.azimuth")));
 }
 
 TEST_F(ProfileJobTest, CanBeInterrupted) {

@@ -157,6 +157,10 @@ std::vector<std::string> reasons_of(const ProfileJob& job, const ProfileSummary&
     reasons.push_back(
         "width or angle lie at the border of what was simulated: say `profile.angle` nearer to "
         "it, or a wider `profile.angle_range`");
+  if (s.other_side)
+    reasons.push_back(
+        "the tilted images look as from the other side: left walls are where right ones should be. "
+        "Is `beam.azimuth` off by 180 degrees?");
   const double height_off = std::abs(s.fit.left[profile_height].value - job.height_nm);
   if (job.height_error_nm > 0 && height_off > far_off * job.height_error_nm)
     reasons.push_back(fmt::format(
@@ -295,7 +299,9 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
     }
     begin(reporter, "fit");
     if (round == 0 && !last) {
-      box = matched_box(job, sights, signals, options, reporter.watch());
+      const MatchedShape match = matched_shape(job, sights, signals, options, reporter.watch());
+      box = match.box;
+      s.other_side = match.other_side;
       continue;
     }
     std::vector<ProfileLibrary> walls;
@@ -316,7 +322,7 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
   }
   for (const SightFit& fit : s.fit.sights)
     s.discrepancy_share = std::max(s.discrepancy_share, fit.discrepancy_share);
-  add_surface(job, image, s);
+  add_surface(image, s);
   // The wall at the left of a gap has its ground at the right.
   if (job.kind == FeatureKind::trench) std::swap(s.fit.left, s.fit.right);
   std::vector<double> errors;

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
+#include <utility>
 
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
@@ -23,8 +23,9 @@ constexpr double width_range = 0.08;     // half of the box, of the width
 constexpr double most_beside_nm = 250;   // of ground and top that is simulated
 constexpr double largest_corner = 0.35;  // of the height
 constexpr std::size_t cascades = 40960;
-constexpr double matched = 0.5;    // the box about the best match, over the first
-constexpr double narrower = 0.35;  // a box over the one before
+constexpr double matched = 0.5;       // the box about the best match, over the first
+constexpr double clearly_less = 0.7;  // of the squares of what shapes leave unexplained
+constexpr double narrower = 0.35;     // a box over the one before
 
 FeatureShape shape_of(FeatureKind kind, double pitch_nm, const ProfileNumbers& n) {
   return {kind,
@@ -199,39 +200,55 @@ WallSignals simulate_signals(const ProfileJob& job, const ProfileView& view, con
   return out;
 }
 
-ProfileBox matched_box(const ProfileJob& job, const std::vector<ProfileSight>& sights,
-                       const std::vector<WallSignals>& signals, const ProfileFitOptions& options,
-                       const Watch& watch) {
+MatchedShape matched_shape(const ProfileJob& job, const std::vector<ProfileSight>& sights,
+                           const std::vector<WallSignals>& signals,
+                           const ProfileFitOptions& options, const Watch& watch) {
   const Signals& first = signals.front().left;
-  std::vector<double> unlike(first.shapes.size());
-  parallel_for(
-      unlike.size(), job.threads,
-      [&](std::size_t i, int) {
-        ProfileFitOptions o = options;
-        o.watch = {{}, watch.cancel};
-        o.prior_mean = first.shapes[i];
-        std::vector<ProfileLibrary> left, right;
-        for (const WallSignals& s : signals) {
-          left.push_back(s.left.alone(i));
-          right.push_back(s.right.signals.empty() ? left.back() : s.right.alone(i));
-        }
-        std::vector<ProfileSight> seen = sights;
-        for (std::size_t k = 0; k < seen.size(); ++k)
-          seen[k].left = &left[k],
-          seen[k].right = signals[k].right.signals.empty() ? &left[k] : &right[k];
-        for (const SightFit& fit : fit_profile(seen, o).sights)
-          unlike[i] += fit.discrepancy_share * fit.discrepancy_share;
-      },
-      watch);
-  ProfileBox box = first.box;
-  const ProfileNumbers& best =
-      first.shapes[static_cast<std::size_t>(std::ranges::min_element(unlike) - unlike.begin())];
+  const auto tilted = [&](std::size_t k) {
+    return sights[k].tilt_deg > 0 && !signals[k].right.signals.empty();
+  };
+  bool any_tilted = false;
+  for (std::size_t k = 0; k < sights.size(); ++k) any_tilted = any_tilted || tilted(k);
+  const auto unlike_by = [&](std::size_t shape, bool swapped) {
+    ProfileFitOptions o = options;
+    o.watch = {{}, watch.cancel};
+    o.prior_mean = first.shapes[shape];
+    std::vector<ProfileLibrary> walls;
+    walls.reserve(2 * signals.size());
+    std::vector<ProfileSight> seen = sights;
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      walls.push_back(signals[k].left.alone(shape));
+      seen[k].left = seen[k].right = &walls.back();
+      if (signals[k].right.signals.empty()) continue;
+      walls.push_back(signals[k].right.alone(shape));
+      seen[k].right = &walls.back();
+      if (swapped && tilted(k)) std::swap(seen[k].left, seen[k].right);
+    }
+    double squares = 0;
+    for (const SightFit& fit : fit_profile(seen, o).sights)
+      squares += fit.discrepancy_share * fit.discrepancy_share;
+    return squares;
+  };
+  const auto all = [&](bool swapped) {
+    std::vector<double> unlike(first.shapes.size());
+    parallel_for(
+        unlike.size(), job.threads, [&](std::size_t i, int) { unlike[i] = unlike_by(i, swapped); },
+        watch);
+    return unlike;
+  };
+  const std::vector<double> unlike = all(false);
+  MatchedShape out;
+  out.box = first.box;
+  const auto best = std::ranges::min_element(unlike);
+  const ProfileNumbers& shape = first.shapes[static_cast<std::size_t>(best - unlike.begin())];
   for (std::size_t k = 0; k < profile_numbers; ++k) {
-    box.half[k] *= matched;
-    if (k != profile_width) box.middle[k] = best[k];
-    if (k == profile_top || k == profile_foot) box.middle[k] = std::max(box.middle[k], box.half[k]);
+    out.box.half[k] *= matched;
+    if (k != profile_width) out.box.middle[k] = shape[k];
+    if (k == profile_top || k == profile_foot)
+      out.box.middle[k] = std::max(out.box.middle[k], out.box.half[k]);
   }
-  return box;
+  if (any_tilted) out.other_side = std::ranges::min(all(true)) < clearly_less * *best;
+  return out;
 }
 
 }  // namespace surf::workflow

@@ -69,10 +69,15 @@ WallSignals simulate_signals(const ProfileJob& job, const ProfileView& view, con
                              double pitch_nm, std::int64_t electrons, std::uint64_t seed,
                              bool coarse, mc::LibrarySource& libraries, const Watch& watch);
 
-/// The box about the shape whose signals alone are most like the images, gains, offsets and places
-/// fitted: over a wide box no quadratic function holds.
-ProfileBox matched_box(const ProfileJob& job, const std::vector<ProfileSight>& sights,
-                       const std::vector<WallSignals>& signals, const ProfileFitOptions& options,
-                       const Watch& watch);
+/// The shape whose signals alone are most like the images, gains, offsets and places fitted.
+struct MatchedShape {
+  ProfileBox box;  ///< about it: over a wide box no quadratic function holds
+  /// Left and right walls the other way round in tilted images make a shape that is clearly more
+  /// like them: the beam was tilted to the other side.
+  bool other_side = false;
+};
+MatchedShape matched_shape(const ProfileJob& job, const std::vector<ProfileSight>& sights,
+                           const std::vector<WallSignals>& signals,
+                           const ProfileFitOptions& options, const Watch& watch);
 
 }  // namespace surf::workflow

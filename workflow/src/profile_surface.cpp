@@ -96,7 +96,7 @@ At nearest(const std::vector<FittedEdge>& edges, double x, std::size_t row) {
 
 }  // namespace
 
-void add_surface(const ProfileJob&, const PlacedImage& image, ProfileSummary& s) {
+void add_surface(const PlacedImage& image, ProfileSummary& s) {
   const std::vector<FittedEdge>& edges = s.fit.edges();
   const std::array<WallDoubt, 2> walls{WallDoubt(s.fit.left), WallDoubt(s.fit.right)};
   const int w = image.values.width(), h = image.values.height();

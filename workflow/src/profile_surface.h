@@ -7,7 +7,7 @@ namespace surf::workflow {
 
 /// The surface of a fitted shape on an image's pixels, lines along y, and the standard deviation of
 /// its heights: by the places of edges in each row, the height, angle and corners.
-void add_surface(const ProfileJob& job, const PlacedImage& image, ProfileSummary& summary);
+void add_surface(const PlacedImage& image, ProfileSummary& summary);
 
 /// The height of walls in a scan, from its lower level to its upper one, and its standard error.
 /// Throws InvalidInput if there are no two levels.

@@ -67,6 +67,7 @@ struct ProfileSummary {
   Grid<double> deviation_nm;  ///< standard deviation of its heights
   double discrepancy_share = 0;      ///< what the simulation is off by, over the contrast; the most
   std::int64_t simulated = 0;        ///< profiles
+  bool other_side = false;           ///< tilted images look as if tilted to the other side
   std::vector<std::string> reasons;  ///< why the result is not to be trusted; none: it is
   std::vector<std::filesystem::path> written;
 };
