@@ -120,6 +120,10 @@ std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary
   const std::size_t views = job.views.size();
   if (views == 0) return out;
   begin(told, "views");
+  if (!job.afm)
+    told.warn(
+        "heights from SEM images alone begin flat, and hardly leave that: give a scan, or measure "
+        "lines, trenches and edges by 'semsurf profile', which takes several images, too");
   const KnownViews& settings = job.known_views;
   const std::vector<ViewAngles> angles = angles_of(job.view_settings, views, 0);
   const auto models =
