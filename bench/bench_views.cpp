@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far surfaces of lines are off that come from one or more SEM images, with a scan and without,
 // whether their errors hold, and how long that takes. The images are by the other tier of physics:
-//   bench_views [CASES [FIRST [FOLDER]]]   with a folder, inputs and results go there
+//   bench_views [CASES [FIRST [FOLDER [ONLY]]]]   with a folder (or ""), inputs go there; ONLY:
+//   what
+//                                                 to fit alone, as "two views and a scan"
 //   bench_views --heights MODEL.json [CASES [FIRST [FOLDER]]]   the reconstruction of heights
 //   beside
 // Lines 100 nm high, of drawn width, wall angle and pitch, pixels of 4 nm, 150 electrons per pixel;
@@ -341,6 +343,7 @@ int main(int argc, char** argv) {
   const int cases = !words.empty() ? std::atoi(words[0].c_str()) : 6,
             first = words.size() > 1 ? std::atoi(words[1].c_str()) : 2;
   const std::filesystem::path folder = words.size() > 2 ? words[2] : "";
+  const std::string only = words.size() > 3 ? words[3] : "";
   workflow::CachedLibraries libraries(io::cache_folder(""));
   std::map<std::string, Pooled> pooled;
   for (int i = first; i < first + cases; ++i) {
@@ -372,18 +375,18 @@ int main(int argc, char** argv) {
     judge_thresholds(c, job, truth, pooled);
     judge_stereo(up[0], to_x[0], truth, pooled);
     judge_quadrants(up[1], up[3], truth, pooled);
-    judge("one view", c, job, truth, pooled);
+    if (only.empty() || only == "one view") judge("one view", c, job, truth, pooled);
     workflow::ProfileJob two = job;
     two.views.resize(1);
     two.views[0].image = to_x[0];
     two.view_settings.tilts_deg = {tilt_deg};
-    judge("two views", c, two, truth, pooled);
+    if (only.empty() || only == "two views") judge("two views", c, two, truth, pooled);
     workflow::ProfileJob three = two;
     three.views.resize(2);
     three.views[1].image = to_minus_x[0];
     three.view_settings.tilts_deg = {tilt_deg, tilt_deg};
     three.view_settings.azimuths_deg = {0, 180};
-    judge("three views", c, three, truth, pooled);
+    if (only.empty() || only == "three views") judge("three views", c, three, truth, pooled);
     workflow::ProfileJob quadrants = two;
     for (const int k : {1, 3}) {
       quadrants.views.emplace_back();
@@ -391,11 +394,13 @@ int main(int argc, char** argv) {
     }
     quadrants.view_settings.tilts_deg = {tilt_deg, 0, 0};
     quadrants.view_signals = {"SE", "BSE-right", "BSE-left"};
-    judge("two views and quadrants", c, quadrants, truth, pooled);
+    if (only.empty() || only == "two views and quadrants")
+      judge("two views and quadrants", c, quadrants, truth, pooled);
     workflow::ProfileJob both = two;
     both.height_nm = 0, both.height_error_nm = 0;
     both.scan = scan;
-    judge("two views and a scan", c, both, truth, pooled);
+    if (only.empty() || only == "two views and a scan")
+      judge("two views and a scan", c, both, truth, pooled);
     if (model.empty()) continue;
     workflow::ReconstructJob heights;
     heights.model.file = model;

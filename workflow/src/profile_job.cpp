@@ -256,8 +256,13 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
       hole.radius_nm = nearest->place_nm;
       sights.push_back({profile_data(view, hole, nearest->to_nm)});
     } else {
-      sights.push_back(
-          sight_of(job, view, views[k + 1], find_edges(view, job.kind, job.threshold).edges));
+      // Another detector's image of the same scan shows the same edges, if fewer of them.
+      const bool same_scan = views[k + 1].tilt_deg == 0 && view.placement() == image.placement() &&
+                             view.values.width() == image.values.width() &&
+                             view.values.height() == image.values.height();
+      sights.push_back(sight_of(
+          job, view, views[k + 1],
+          same_scan ? s.threshold.edges : find_edges(view, job.kind, job.threshold).edges));
     }
   }
   s.threshold_widths_nm = threshold_widths(s.threshold, job.kind);

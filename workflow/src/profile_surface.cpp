@@ -121,7 +121,8 @@ void add_surface(const PlacedImage& image, ProfileSummary& s) {
 }
 
 Measured wall_height(const HeightField& scan) {
-  constexpr int away = 2;  // samples, from what is between the levels
+  constexpr int farthest = 2;  // samples, from what is between the levels
+  constexpr std::ptrdiff_t fewest = 16;
   constexpr double level_share = 0.15;
   std::vector<double> sorted;
   for (std::size_t i = 0; i < scan.z_nm.size(); ++i)
@@ -133,7 +134,7 @@ Measured wall_height(const HeightField& scan) {
     return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
   };
   const double low = at(0.1), high = at(0.9), band = level_share * (high - low);
-  const auto near = [&](double level) {
+  const auto near = [&](double level, int away) {
     Mask mask(scan.z_nm.width(), scan.z_nm.height());
     for (int y = 0; y < mask.height(); ++y)
       for (int x = 0; x < mask.width(); ++x) {
@@ -148,8 +149,14 @@ Measured wall_height(const HeightField& scan) {
       }
     return mask;
   };
-  const StepHeight step = measure_step(scan, near(low), near(high));
-  return {step.height_nm, step.stderr_nm};
+  for (int away = farthest; away >= 0; --away) {
+    const Mask ground = near(low, away), top = near(high, away);
+    if (std::ranges::count(ground.data(), 1) < fewest || std::ranges::count(top.data(), 1) < fewest)
+      continue;  // narrow places
+    const StepHeight step = measure_step(scan, ground, top);
+    return {step.height_nm, step.stderr_nm};
+  }
+  throw InvalidInput("AFM scan", "it does not show two levels", "Say `profile.height`");
 }
 
 }  // namespace surf::workflow
