@@ -20,10 +20,9 @@
 #include <vector>
 
 #include "afm/normal_numbers.h"
-#include "surf/core/image.h"
+#include "signal_file.h"
 #include "surf/core/random.h"
 #include "surf/io/cache.h"
-#include "surf/io/image_file.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/simulate.h"
 #include "surf/profile/feature_shape.h"
@@ -143,16 +142,6 @@ PlacedImage image_of(const Case& c, mc::LibrarySource& libraries) {
   return image;
 }
 
-void write(const std::filesystem::path& file, const PlacedImage& image) {
-  std::filesystem::create_directories(file.parent_path());
-  Image out;
-  static_cast<Placement&>(out) = image;
-  Grid<float> values(image.values.width(), image.values.height());
-  std::ranges::copy(image.values.data(), values.data().begin());
-  out.channels = {{"signal", "1", std::move(values)}};
-  io::write_image(file, out);
-}
-
 struct Pooled {
   double count = 0, width2 = 0, angle2 = 0, threshold2 = 0, width_in = 0, angle_in = 0,
          roughness2 = 0;
@@ -211,7 +200,7 @@ int main(int argc, char** argv) {
     if (!folder.empty()) {
       job.folder = folder / std::to_string(i);
       job.sem.file = folder / (std::to_string(i) + ".tif");
-      write(job.sem.file, job.sem.image);
+      bench::write_signal(job.sem.file, job.sem.image);
     }
     const auto begin = std::chrono::steady_clock::now();
     workflow::ProfileSummary s;

@@ -22,14 +22,13 @@
 #include <string>
 #include <vector>
 
+#include "signal_file.h"
 #include "surf/afm/morphology.h"
 #include "surf/afm/noise.h"
 #include "surf/afm/tip_shapes.h"
-#include "surf/core/image.h"
 #include "surf/core/random.h"
 #include "surf/io/cache.h"
 #include "surf/io/height_field_file.h"
-#include "surf/io/image_file.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/simulate.h"
 #include "surf/profile/feature_shape.h"
@@ -145,16 +144,6 @@ HeightField scan_of(const Case& c) {
   for (int y = 0; y < m; ++y)
     for (int x = 0; x < n; ++x) scan.z_nm(x, y) = seen.z_nm(fine * x, fine * y) + e(x, y);
   return scan;
-}
-
-void write(const std::filesystem::path& file, const PlacedImage& image) {
-  std::filesystem::create_directories(file.parent_path());
-  Image out;
-  static_cast<Placement&>(out) = image;
-  Grid<float> values(image.values.width(), image.values.height());
-  std::ranges::copy(image.values.data(), values.data().begin());
-  out.channels = {{"signal", "1", std::move(values)}};
-  io::write_image(file, out);
 }
 
 /// Root mean square difference, the median taken off, and the share within two deviations.
@@ -357,11 +346,11 @@ int main(int argc, char** argv) {
     const HeightField truth = truth_of(c), scan = scan_of(c);
     if (!folder.empty()) {
       const std::filesystem::path own = folder / std::to_string(i);
-      write(own / "up.tif", up[0]);
-      write(own / "to_x.tif", to_x[0]);
-      write(own / "to_minus_x.tif", to_minus_x[0]);
-      write(own / "right.tif", up[1]);
-      write(own / "left.tif", up[3]);
+      bench::write_signal(own / "up.tif", up[0]);
+      bench::write_signal(own / "to_x.tif", to_x[0]);
+      bench::write_signal(own / "to_minus_x.tif", to_minus_x[0]);
+      bench::write_signal(own / "right.tif", up[1]);
+      bench::write_signal(own / "left.tif", up[3]);
       io::write_height_field(own / "scan.gsf", scan, {});
       io::write_height_field(own / "truth.gsf", truth, {});
     }

@@ -20,12 +20,6 @@
 namespace surf::workflow {
 namespace {
 
-std::string text_of(const std::vector<double>& values) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : ",") + format_exact(value);
-  return text;
-}
-
 std::vector<double> numbers_of(std::string_view text, const std::string& subject) {
   return parse_values(text, {.name = "number", .help = ""}, subject);
 }
@@ -87,7 +81,7 @@ void describe_calibration(ParameterVisitor& visit, std::optional<GivenCalibratio
        .help = "Gain of each channel of the model",
        .otherwise = "fitted",
        .form = "N,N"},
-      [&] { return calibration ? text_of(calibration->gains) : std::string(); },
+      [&] { return calibration ? exact_list(calibration->gains) : std::string(); },
       [&](std::string_view text, const std::string& subject) {
         calibration = {read_gains(text, subject), 0};
       });
@@ -146,7 +140,7 @@ void describe_known(ParameterVisitor& visit, KnownViews& views) {
       {.name = "reconstruction.view_gains",
        .help = "Gains of the model's channels, then the offset, of each SEM image after the first",
        .form = "N,N,OFFSET"},
-      [](const std::vector<double>& v) { return text_of(v); },
+      [](const std::vector<double>& v) { return exact_list(v); },
       [](std::string_view text, const std::string& subject) { return numbers_of(text, subject); });
   describe_known<SemNoise>(
       visit, views.noises,
@@ -154,7 +148,7 @@ void describe_known(ParameterVisitor& visit, KnownViews& views) {
        .help = "Noise of each SEM image after the first, as `reconstruction.sem_noise`",
        .form = "SLOPE,INTERCEPT"},
       [](const SemNoise& n) {
-        return text_of({n.slope, n.intercept, n.least_variance});
+        return exact_list({n.slope, n.intercept, n.least_variance});
       },
       [](std::string_view text, const std::string& subject) {
         return read_sem_noise(text, subject);
@@ -166,7 +160,7 @@ void describe_known(ParameterVisitor& visit, KnownViews& views) {
                "from",
        .form = "X,Y"},
       [](const Point2& p) {
-        return text_of({p.x, p.y});
+        return exact_list({p.x, p.y});
       },
       [](std::string_view text, const std::string& subject) {
         const std::vector<double> v = numbers_of(text, subject);
@@ -267,7 +261,7 @@ void describe(ParameterVisitor& visit, PoseOptions& pose) {
       [&] {
         if (!pose.transform) return std::string();
         const Affine& m = *pose.transform;
-        return text_of({m.xx, m.xy, m.x0, m.yx, m.yy, m.y0});
+        return exact_list({m.xx, m.xy, m.x0, m.yx, m.yy, m.y0});
       },
       [&](std::string_view text, const std::string& subject) {
         read_transform(text, subject, pose);
@@ -315,7 +309,7 @@ void describe(ParameterVisitor& visit, ReconstructJob& job) {
          .form = "SLOPE,INTERCEPT"},
         [&] {
           const auto& n = job.sem_noise;
-          return n ? text_of({n->slope, n->intercept, n->least_variance}) : std::string();
+          return n ? exact_list({n->slope, n->intercept, n->least_variance}) : std::string();
         },
         [&](std::string_view text, const std::string& subject) {
           job.sem_noise = read_sem_noise(text, subject);
@@ -359,7 +353,7 @@ void describe(ParameterVisitor& visit, ReconstructJob& job) {
          .level = Level::advanced},
         [&] {
           const auto& t = job.tilt;
-          return t ? text_of({t->x, t->y, t->doubt.x, t->doubt.y}) : std::string();
+          return t ? exact_list({t->x, t->y, t->doubt.x, t->doubt.y}) : std::string();
         },
         [&](std::string_view text, const std::string& subject) {
           job.tilt = read_tilt(text, subject);

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "surf/core/error.h"
+#include "surf/core/some_parameters.h"
 #include "surf/core/units.h"
 #include "surf/core/words.h"
 #include "surf/io/cache.h"
@@ -52,18 +53,19 @@ void describe_path(ParameterVisitor& visit, std::filesystem::path& path, const P
       [&](std::string_view text, const std::string&) { path = text; });
 }
 
+std::string exact_list(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : ",") + format_exact(value);
+  return text;
+}
+
 void describe_numbers(ParameterVisitor& visit, std::vector<double>& values,
                       const Parameter& about) {
   visit.form(
-      about,
-      [&] {
-        std::string text;
-        for (const double value : values) text += (text.empty() ? "" : ",") + format_exact(value);
-        return text;
-      },
+      about, [&] { return exact_list(values); },
       [&](std::string_view text, const std::string& subject) {
-        for (const std::string_view word : split(text, ","))
-          values.push_back(parse_value(word, about, subject));
+        const std::vector<double> more = parse_values(text, about, subject);
+        values.insert(values.end(), more.begin(), more.end());
       },
       FieldKind::list);
 }

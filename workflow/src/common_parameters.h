@@ -25,9 +25,12 @@ void describe_images(ParameterVisitor& visit, std::vector<std::filesystem::path>
 /// A file or a folder.
 void describe_path(ParameterVisitor& visit, std::filesystem::path& path, const Parameter& about);
 
-/// Names separated by commas: "NAME,NAME".
+/// Numbers with commas between them that are read back exactly.
+std::string exact_list(const std::vector<double>& values);
+
 /// Numbers that are given one by one, or with commas between them.
 void describe_numbers(ParameterVisitor& visit, std::vector<double>& values, const Parameter& about);
+/// Names separated by commas: "NAME,NAME".
 void describe_names(ParameterVisitor& visit, std::vector<std::string>& names,
                     const Parameter& about);
 

@@ -201,6 +201,24 @@ PlacedImage along_y(const ProfileJob& job, const PlacedImage& image) {
   return job.along_x && job.kind != FeatureKind::hole ? transposed(image) : image;
 }
 
+/// A hole and its rim by the threshold method: of several rims the one that the search for the hole
+/// found.
+struct HoleRim {
+  Circle hole;
+  ThresholdEdges threshold;
+};
+HoleRim rim_of_hole(const PlacedImage& image, double threshold) {
+  HoleRim out{find_hole(image), {}};
+  out.threshold = find_edges(unrolled(image, out.hole), FeatureKind::hole, threshold);
+  auto& [edges, places, rows, pitch] = out.threshold;
+  const auto nearest = std::ranges::min_element(
+      edges, {}, [&](const ImageEdge& e) { return std::abs(e.place_nm - out.hole.radius_nm); });
+  places = {places[static_cast<std::size_t>(nearest - edges.begin())]};
+  edges = {*nearest};
+  out.hole.radius_nm = edges.front().place_nm;
+  return out;
+}
+
 /// The height and its standard error, as told or by the scan.
 void find_height(ProfileJob& job, ProfileSummary& s, const Reporter& reporter) {
   if (job.height_nm > 0 || !job.scan) return;
@@ -228,18 +246,10 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
   const std::vector<ProfileView> views = views_of(job);
   std::vector<ProfileSight> sights;
   if (job.kind == FeatureKind::hole) {
-    s.hole = find_hole(image);
-    const PlacedImage around = unrolled(image, *s.hole);
-    s.threshold = find_edges(around, FeatureKind::hole, job.threshold);
-    // Of several rims the one that the search for the hole found.
-    const auto nearest = std::ranges::min_element(s.threshold.edges, {}, [&](const ImageEdge& e) {
-      return std::abs(e.place_nm - s.hole->radius_nm);
-    });
-    s.threshold.places_nm = {
-        s.threshold.places_nm[static_cast<std::size_t>(nearest - s.threshold.edges.begin())]};
-    s.threshold.edges = {*nearest};
-    s.hole->radius_nm = nearest->place_nm;
-    sights.push_back({profile_data(image, *s.hole, nearest->to_nm)});
+    HoleRim rim = rim_of_hole(image, job.threshold);
+    s.hole = rim.hole;
+    s.threshold = std::move(rim.threshold);
+    sights.push_back({profile_data(image, *s.hole, s.threshold.edges.front().to_nm)});
   } else {
     s.threshold = find_edges(image, job.kind, job.threshold);
     sights.push_back(sight_of(job, image, views[0], s.threshold.edges));
@@ -247,14 +257,8 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
   for (std::size_t k = 0; k < job.views.size(); ++k) {
     const PlacedImage view = along_y(job, job.views[k].image);
     if (job.kind == FeatureKind::hole) {
-      Circle hole = find_hole(view);
-      const PlacedImage around = unrolled(view, hole);
-      const ThresholdEdges found = find_edges(around, FeatureKind::hole, job.threshold);
-      const auto nearest = std::ranges::min_element(found.edges, {}, [&](const ImageEdge& e) {
-        return std::abs(e.place_nm - hole.radius_nm);
-      });
-      hole.radius_nm = nearest->place_nm;
-      sights.push_back({profile_data(view, hole, nearest->to_nm)});
+      const HoleRim rim = rim_of_hole(view, job.threshold);
+      sights.push_back({profile_data(view, rim.hole, rim.threshold.edges.front().to_nm)});
     } else {
       // Another detector's image of the same scan shows the same edges, if fewer of them.
       const bool same_scan = views[k + 1].tilt_deg == 0 && view.placement() == image.placement() &&

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "chain_steps.h"
+#include "common_parameters.h"
 #include "compare_truth.h"
 #include "correct_and_reconstruct.h"
 #include "film_effect.h"
@@ -44,26 +45,19 @@ std::string hash_of(const std::vector<T>& values) {
   return io::sha256_of(std::as_bytes(std::span(values)));
 }
 
-std::string text_of(const std::vector<double>& values) {
-  std::string text;
-  for (const double value : values)
-    text += fmt::format("{}{}", text.empty() ? "" : ",", format_exact(value));
-  return text;
-}
-
-std::string map_text(const Affine& m) { return text_of({m.xx, m.xy, m.x0, m.yx, m.yy, m.y0}); }
+std::string map_text(const Affine& m) { return exact_list({m.xx, m.xy, m.x0, m.yx, m.yy, m.y0}); }
 
 /// What a state depends on of an SEM image; keys begin with `of`.
 void add_image(const std::string& of, const SemData& sem, const StoredModel& model, Identity& id) {
   const PlacedImage& image = sem.image;
   id[of] = hash_of(image.values.data()) + hash_of(image.valid.data()) +
-           text_of({image.pitch_x_nm, image.pitch_y_nm, image.origin_x_nm, image.origin_y_nm});
+           exact_list({image.pitch_x_nm, image.pitch_y_nm, image.origin_x_nm, image.origin_y_nm});
   const std::string prefix = of == "SEM image" ? "" : of + "'s ";
   id[prefix + "model"] = model.sha256;
-  id[prefix + "gains"] = text_of(sem.gains);
+  id[prefix + "gains"] = exact_list(sem.gains);
   id[prefix + "offset"] = format_exact(sem.offset);
   id[prefix + (prefix.empty() ? "SEM noise" : "noise")] =
-      text_of({sem.noise.slope, sem.noise.intercept, sem.noise.least_variance});
+      exact_list({sem.noise.slope, sem.noise.intercept, sem.noise.least_variance});
   for (const SemDiscrepancy& part : sem.discrepancy)
     id[prefix + "model error"] +=
         fmt::format("{} {:g} ", hash_of(part.deviation.data()), part.correlation_px);
@@ -85,10 +79,10 @@ Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const S
   if (afm) {
     const HeightField& f = afm->image;
     id["scan"] = hash_of(f.z_nm.data()) + hash_of(f.valid.data()) +
-                 text_of({f.pitch_x_nm, f.pitch_y_nm, f.origin_x_nm, f.origin_y_nm});
+                 exact_list({f.pitch_x_nm, f.pitch_y_nm, f.origin_x_nm, f.origin_y_nm});
     id["tip"] =
         hash_of(afm->tip.z_nm.data()) + fmt::format(" {} {}", afm->tip.apex_x, afm->tip.apex_y);
-    id["AFM noise"] = text_of({afm->noise.alpha, afm->noise.innovation_nm2});
+    id["AFM noise"] = exact_list({afm->noise.alpha, afm->noise.innovation_nm2});
     id["upsampling"] = std::to_string(afm->upsample);
   }
   if (sem) {
@@ -105,8 +99,8 @@ Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const S
     const std::string of = fmt::format("view {}", k + 2);
     const SemView& view = views[k];
     add_image(of, view.sem, of_views[k].model, id);
-    id[of + "'s pose"] = text_of({view.pose.tilt_deg, view.pose.azimuth_deg, view.tilt_error_deg,
-                                  view.scale_error}) +
+    id[of + "'s pose"] = exact_list({view.pose.tilt_deg, view.pose.azimuth_deg, view.tilt_error_deg,
+                                     view.scale_error}) +
                          map_text(view.pose.to_plane);
   }
   if (corrections)

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "common_parameters.h"
 #include "surf/afm/round_tip.h"
 #include "surf/core/command_words.h"
 #include "surf/core/units.h"
@@ -19,13 +20,6 @@ namespace surf::workflow {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string list_of(const std::vector<double>& values) {
-  std::string text;
-  for (const double value : values)
-    text += fmt::format("{}{}", text.empty() ? "" : ",", format_exact(value));
-  return text;
-}
 
 /// A number, or null if it is not finite, as JSON requires.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
@@ -337,8 +331,8 @@ std::vector<std::string> repeating_command(const ReconstructJob& job, const Reco
   if (afm) {
     add("afm", job.afm->file.string());
     add("tip", (job.folder / (used.options.refine_tip ? "first_tip.txt" : "tip.txt")).string());
-    add("afm-noise",
-        list_of({afm->noise.alpha, afm->noise.innovation_nm2}));  // exact, unlike scan.height_noise
+    add("afm-noise", exact_list({afm->noise.alpha,
+                                 afm->noise.innovation_nm2}));  // exact, unlike scan.height_noise
     used.afm->preparation.noise.reset();
     usual.afm.emplace();
   }

@@ -123,9 +123,9 @@ void SightOfWalls::move_outward(double by_nm) {
   }
 }
 
-/// Gain and offset by least squares, where edges lie best: thresholds are off by nanometres, and
-/// chance in the library makes small valleys in between, in which steps would end.
-void SightOfWalls::begin(Walls& walls) {
+// Where edges lie best: thresholds are off by nanometres, and chance in the library makes small
+// valleys in between, in which steps would end.
+void SightOfWalls::begin(const Walls& walls) {
   constexpr double farthest_nm = 6, step_nm = 0.25;
   double best = 0, least = HUGE_VAL;
   for (double at = -farthest_nm; at <= farthest_nm; at += step_nm) {

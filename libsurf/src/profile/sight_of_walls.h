@@ -40,7 +40,7 @@ class SightOfWalls {
   int edges() const { return static_cast<int>(sight_->data.edges.size()); }
 
   /// Gain, offset and the places of edges, by a search.
-  void begin(Walls& walls);
+  void begin(const Walls& walls);
   /// Adds this image's part to the normal equations; its own numbers begin at `first`. Those that
   /// errors are taken from have slopes over some places.
   void add_to(const WallLayout& layout, int first, const Walls& walls, bool of_errors,

@@ -6,6 +6,7 @@
 
 #include <Eigen/Dense>
 
+#include "damped_steps.h"
 #include "gaussian_basis.h"
 #include "sem/minimise/minimise.h"
 #include "surf/core/error.h"
@@ -110,7 +111,7 @@ void fit_few(const Objective& o, Unknowns& at, const Watch& watch) {
   const int of_mixture = o.fits_mixture() ? mixture_numbers : 0, n = of_map + of_mixture;
   if (n == 0) return;
   Objective::State state = o.evaluate(at);
-  double damping = 1e-6;
+  DampedSteps steps;
   for (int iteration = 0; iteration < 20; ++iteration) {
     watch.check();
     // Images of a unit change of each unknown. Those of the SEM need no derivative by heights.
@@ -152,28 +153,17 @@ void fit_few(const Objective& o, Unknowns& at, const Watch& watch) {
       for (int k = 0; k < of_mixture; ++k)
         a(of_map + k, of_map + k) += prior[static_cast<std::size_t>(k)];
     }
-    bool better = false;
-    double fell = 0;
-    for (int tries = 0; tries < 8 && !better; ++tries) {
-      Eigen::MatrixXd damped = a;
-      damped.diagonal().array() = a.diagonal().array() * (1 + damping) + 1e-12;
-      const Eigen::VectorXd d = damped.ldlt().solve(-g);
+    const double fell = steps.step(a, g, [&](const Eigen::VectorXd& d) {
       Step step = o.zero();
       for (int k = 0; k < of_map; ++k) step.map[k] = d(k);
       for (int k = 0; k < of_mixture; ++k) step.mixture[k] = d(of_map + k);
       const Unknowns next = o.moved(at, step);
       Objective::State there = o.evaluate(next);
-      fell = state.value() - there.value();
-      if (fell > 0) {
-        at = next;
-        state = std::move(there);
-        better = true;
-        damping *= 0.1;
-      } else {
-        damping = std::max(damping * 10, 1e-4);
-      }
-    }
-    if (!better || fell < 0.1) return;
+      const double lower = state.value() - there.value();
+      if (lower > 0) at = next, state = std::move(there);
+      return lower;
+    });
+    if (fell < settled_step) return;
   }
 }
 

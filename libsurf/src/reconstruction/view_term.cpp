@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
+#include "damped_steps.h"
 #include "initial_surface.h"
 
 namespace surf::reconstruction {
@@ -117,9 +116,9 @@ ViewUnknowns ViewTerm::moved(const ViewUnknowns& at, const ViewChange& by, bool 
 
 void ViewTerm::fit(const Grid<double>& z, ViewUnknowns& at, bool mixture,
                    const Watch& watch) const {
-  constexpr int iterations = 20, tries_each = 8;
+  constexpr int iterations = 20;
   State state = evaluate(z, at);
-  double damping = 1e-6;
+  DampedSteps steps;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     watch.check();
     const auto given = block(state, at, mixture, nullptr);
@@ -134,28 +133,17 @@ void ViewTerm::fit(const Grid<double>& z, ViewUnknowns& at, bool mixture,
       if (i < pose_numbers) pull(i) = g.pose[i] + prior[i];
       else if (mixture) pull(i) = g.mixture[i - pose_numbers];
     }
-    bool better = false;
-    double fell = 0;
-    for (int tries = 0; tries < tries_each && !better; ++tries) {
-      Eigen::MatrixXd damped = a;
-      damped.diagonal() *= 1 + damping;
-      const Eigen::VectorXd d = damped.ldlt().solve(-pull);
+    const double fell = steps.step(a, pull, [&](const Eigen::VectorXd& d) {
       ViewChange step;
       for (int k = 0; k < pose_numbers; ++k) step.pose[k] = d(k);
       for (int k = 0; k < 2; ++k) step.mixture[k] = d(pose_numbers + k);
       const ViewUnknowns next = moved(at, step, mixture);
       State there = evaluate(z, next);
-      fell = state.value - there.value;
-      if (fell > 0) {
-        at = next;
-        state = std::move(there);
-        better = true;
-        damping *= 0.1;
-      } else {
-        damping = std::max(damping * 10, 1e-4);
-      }
-    }
-    if (!better || fell < 0.1) return;
+      const double lower = state.value - there.value;
+      if (lower > 0) at = next, state = std::move(there);
+      return lower;
+    });
+    if (fell < settled_step) return;
   }
 }
 

@@ -28,14 +28,11 @@ struct ViewAngles {
 std::vector<ViewAngles> angles_of(const ViewSettings& settings, std::size_t views,
                                   double energy_ev);
 
-/// What a list says of each further image; where it is empty, `otherwise`. Throws UsageError naming
-/// `subject` for other lengths.
-template <class T>
-std::vector<T> for_each_view(const std::vector<T>& list, std::size_t views, const T& otherwise,
-                             const std::string& subject);
 /// The error of a list of another length.
 [[noreturn]] void refuse_length(std::size_t given, std::size_t views, const std::string& subject);
 
+/// What a list says of each further image; where it is empty, `otherwise`. Throws UsageError naming
+/// `subject` for other lengths.
 template <class T>
 std::vector<T> for_each_view(const std::vector<T>& list, std::size_t views, const T& otherwise,
                              const std::string& subject) {
