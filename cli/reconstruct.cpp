@@ -99,6 +99,14 @@ void print_summary(const workflow::ReconstructSummary& s, const workflow::Recons
     print_residual("AFM", s.result.scales.back().afm_residual);
     print_residual("SEM", s.result.scales.back().sem_residual);
   }
+  for (std::size_t k = 0; k < s.result.views.size(); ++k) {
+    const ViewResult& view = s.result.views[k];
+    const std::string name = fmt::format("view {}", k + 2);
+    line(name, fmt::format("tilted by {:.2f} deg to {:.0f} deg, {:g} and {:g} as told",
+                           view.pose.tilt_deg, view.pose.azimuth_deg, s.views[k].tilt_deg,
+                           s.views[k].azimuth_deg));
+    print_residual("", view.statistics);
+  }
   if (s.result.sem_discrepancy_share > 0)
     line("model",
          fmt::format("off by {:.2g} % of the SEM image's contrast, as far as it is allowed "

@@ -166,7 +166,7 @@ double place_doubt_px(const ReconstructSummary& s) {
 }
 
 /// Reasons against trusting the result.
-std::vector<std::string> reasons_of(const ReconstructSummary& s) {
+std::vector<std::string> reasons_of(const ReconstructSummary& s, double tilt_error_deg) {
   std::vector<std::string> reasons;
   const Reconstruction& r = s.result;
   if (!r.converged || (!r.scales.empty() && r.scales.back().ended == "iterations"))
@@ -188,6 +188,11 @@ std::vector<std::string> reasons_of(const ReconstructSummary& s) {
   }
   for (std::size_t k = 0; k < r.views.size(); ++k) {
     const ViewResult& view = r.views[k];
+    constexpr double far_off = 2.5;  // standard errors of the tilt that was said
+    if (std::abs(view.pose.tilt_deg - s.views[k].tilt_deg) > far_off * tilt_error_deg)
+      reasons.push_back(fmt::format(
+          "view {} seems tilted by {:.2f} degrees, not {:g}: check `beam.tilt` and `beam.azimuth`",
+          k + 2, view.pose.tilt_deg, s.views[k].tilt_deg));
     if (!like_noise(view.statistics))
       reasons.push_back(fmt::format(
           "what is left of view {} does not look like noise ({}): check its tilt and azimuth, and "
@@ -414,7 +419,7 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
   if (afm && sem) s.rival = rival_surface(job, s, *afm, *sem, told);
   s.held = what_held(s.result);
   if (job.truth) s.truth = compare_with_truth(s.result, *job.truth);
-  s.reasons = reasons_of(s);
+  s.reasons = reasons_of(s, job.view_settings.tilt_error_deg);
   if (!s.reasons.empty()) s.verdict = ReconstructionVerdict::flagged;
   if (!checkpoint) return s;
   begin(told, "writing");

@@ -39,7 +39,7 @@ PlotPanel picture(const std::string& title, const PlacedImage& image, PlotColors
 }
 
 PlotPanel residual_panel(const std::string& title, const PlacedImage& image) {
-  PlotPanel panel = picture(title, image, PlotColors::difference, "standard deviations");
+  PlotPanel panel = picture(title, image, PlotColors::difference, "deviations");
   panel.image->range = io::PlotAxis::Range{-deviations_shown, deviations_shown};
   return panel;
 }
