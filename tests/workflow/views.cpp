@@ -14,7 +14,6 @@ namespace surf::workflow {
 namespace {
 
 using testing::HasSubstr;
-using testing::IsEmpty;
 using testing::ThrowsMessage;
 
 /// A second image of the pair's place, seen from the side.
@@ -88,6 +87,14 @@ TEST_F(ReconstructionOfViews, AViewOfAnotherPlaceIsRefused) {
   const ReconstructSummary s = run(job_);
   EXPECT_EQ(s.verdict, ReconstructionVerdict::not_registered);
   EXPECT_THAT(s.reasons.at(0), HasSubstr("view 2"));
+}
+
+TEST_F(ReconstructionOfViews, AViewOfTheOtherSideIsRefused) {
+  job_.views[0] = seen_from(180);
+  const ReconstructSummary s = run(job_);
+  EXPECT_GT(s.views[0].other_side, s.views[0].correlation);
+  EXPECT_EQ(s.verdict, ReconstructionVerdict::not_registered);
+  EXPECT_THAT(s.reasons.at(0), HasSubstr("beam.azimuth"));
 }
 
 TEST_F(ReconstructionOfViews, ListsThatDoNotFitTheImagesAreRefused) {
