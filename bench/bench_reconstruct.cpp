@@ -86,9 +86,9 @@ void print_costs(const Scene& s) {
                factor = seconds([&] { m.factor(o, at, state); });
   Preconditioner twice(Preconditioner::usual_tile_px, 0, Precision::double_always);
   const double double_factor = seconds([&] { twice.factor(o, at, state); });
-  const SemTerm::Near near = o.sem->near(*state.sem, at.mixture);
+  const Objective::Near near = o.near(at, state);
   const double sparse = seconds([&] { o.product(at, state, g, &near); }),
-               made = seconds([&] { o.sem->near(*state.sem, at.mixture); });
+               made = seconds([&] { o.near(at, state); });
   const double model = seconds([&] { s.sem.model->predict(frame.field(at.z_nm)); });
   fmt::print(
       "  costs: objective {:.0f} ms, gradient {:.0f} ms, second derivative times a vector {:.0f} "

@@ -161,11 +161,10 @@ void print_systems(const Scene& s, const Grid<double>* surface) {
       for (int x = 0; x < surface->width(); ++x) at.z_nm(x + 12, y + 12) = (*surface)(x, y);
   const Objective::State state = o.evaluate(at);
   const Step g = o.gradient(at, state);
-  const SemTerm::Near near = o.sem->near(*state.sem, at.mixture);
+  const Objective::Near near = o.near(at, state);
   fmt::print("  objective {:.1f} ms, gradient {:.1f}, sparse model {:.1f}, product {:.1f}\n",
              ms([&] { o.evaluate(at); }), ms([&] { o.gradient(at, state); }),
-             ms([&] { o.sem->near(*state.sem, at.mixture); }),
-             ms([&] { o.product(at, state, g, &near); }));
+             ms([&] { o.near(at, state); }), ms([&] { o.product(at, state, g, &near); }));
 
   Preconditioner d(Preconditioner::usual_tile_px, 0, Precision::double_always),
       f(Preconditioner::usual_tile_px, 0);
