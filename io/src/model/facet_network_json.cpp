@@ -13,6 +13,7 @@ nlohmann::ordered_json write(const ModelParameters& parameters) {
   json["scales"] = nlohmann::ordered_json::array();
   for (const FacetScale& scale : p.scales) json["scales"].push_back(facet_json(scale));
   json["sky_edges_nm"] = p.sky_edges_nm;
+  if (p.sided) json["sided"] = true;
   json["channels"] = nlohmann::ordered_json::array();
   for (const FacetNetworkParameters::Channel& c : p.channels)
     json["channels"].push_back({{"name", c.name}, {"scale", c.scale}});
@@ -45,6 +46,7 @@ ModelParameters read(const JsonValue& value) {
   for (const char* key : {"scales", "sky_edges_nm", "layers", "channels"}) value.require(key);
   for (const JsonValue& scale : value.items("scales")) p.scales.push_back(facet_of(scale));
   p.sky_edges_nm = value.numbers("sky_edges_nm");
+  p.sided = value.boolean("sided", false);
   for (const JsonValue& layer : value.items("layers")) p.layers.push_back(layer_of(layer));
   for (const JsonValue& item : value.items("channels"))
     p.channels.push_back({item.require("name").text(), item.require("scale").number()});

@@ -25,14 +25,18 @@ struct DenseLayer {
 ///     c(L g H g / (1 + |g|^2)),   where c(x) = x / (1 + x^2)^(1/4).
 /// For each band of distances, there are the mean and the mean square over 16 directions of the
 /// sine s of the elevation of the surface. The last input is the visible sky: the mean over
-/// directions of the product of 1 - 0.9 max(s, 0)^2 over all distances. The activation function of
-/// hidden units is x / sqrt(1 + x^2). A channel is its scale times o + sqrt(1 + o^2), where o is an
-/// output of the last layer: it is above zero, and linear for large o. All functions have
+/// directions of the product of 1 - 0.9 max(s, 0)^2 over all distances. So rotations of the surface
+/// rotate the image. A network for detectors that look from a side has inputs that tell directions,
+/// too (`sided`): for each scale g / (1 + |g|^2)^(1/4), for each band the mean of s u, where u is
+/// the unit vector of the direction, and the mean of u times the product. The activation function
+/// of hidden units is x / sqrt(1 + x^2). A channel is its scale times o + sqrt(1 + o^2), where o is
+/// an output of the last layer: it is above zero, and linear for large o. All functions have
 /// continuous derivatives.
 struct FacetNetworkParameters {
   std::vector<FacetScale> scales;  ///< 1 to 32
   /// Limits of the bands, rising from 0; at most 12 bands, or none.
   std::vector<double> sky_edges_nm;
+  bool sided = false;              ///< some channel looks from a side
   std::vector<DenseLayer> layers;  ///< 1 to 4; the last has one output for each channel
   struct Channel {
     std::string name;

@@ -18,6 +18,7 @@ struct FacetNetworkFitOptions {
   /// The range of electrons in the material, nm, > 0: the surface farther away hardly matters.
   /// Determines the default scales and bands.
   double range_nm = 30;
+  bool sided = false;           ///< some channel looks from a side: see FacetNetworkParameters
   std::vector<int> hidden{32};  ///< units of each hidden layer: 0 to 3 layers of 1 to 256 units
   int iterations = 600;  ///< largest number of iterations of the optimiser in all, 1 to 100,000
   /// Penalty of large weights, >= 0: this times the sum of their squares is added to the mean

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surf/sem/facet_network.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -82,8 +83,8 @@ struct FacetNetwork {
 
 int network_inputs(const FacetNetworkParameters& parameters) {
   const int edges = static_cast<int>(parameters.sky_edges_nm.size());
-  return network::facet_inputs * static_cast<int>(parameters.scales.size()) +
-         (edges > 1 ? 2 * (edges - 1) + 1 : 0);
+  return network::facet_inputs(parameters.sided) * static_cast<int>(parameters.scales.size()) +
+         network::sky_inputs(std::max(edges - 1, 0), parameters.sided);
 }
 
 std::shared_ptr<const ImageModel> make_facet_network(const ModelScope& scope,

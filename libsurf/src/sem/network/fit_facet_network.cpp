@@ -221,6 +221,7 @@ FacetNetworkFit fit_facet_network(const std::vector<TrainingImage>& images,
   p.scales = options.scales.empty() ? network_scales(pixel_nm, options.range_nm) : options.scales;
   p.sky_edges_nm = options.sky_edges_nm.empty() ? network_sky_edges(pixel_nm, options.range_nm)
                                                 : options.sky_edges_nm;
+  p.sided = options.sided;
   for (const std::string& name : channels) p.channels.push_back({name, 1});
   if (images.front().images.size() != channels.size())
     throw InvalidInput(subject,

@@ -51,8 +51,8 @@ template <class T>
 NetworkEngine<T>::NetworkEngine(const FacetNetworkParameters& parameters, double pitch_nm,
                                 const ModelOptions& options)
     : parameters_(parameters), options_(options), pass_(parameters.scales, pitch_nm, pitch_nm),
-      view_(parameters.sky_edges_nm, pitch_nm), loops_(&network::operations<T>()),
-      inputs_(network_inputs(parameters)) {
+      view_(parameters.sky_edges_nm, pitch_nm), loops_(&network::operations<T>(parameters.sided)),
+      per_scale_(network::facet_inputs(parameters.sided)), inputs_(network_inputs(parameters)) {
   options_.threads = resolve_threads(options.threads);
   for (const FacetScale& scale : parameters.scales)
     lengths_.push_back(T(length_nm(scale, pitch_nm)));
@@ -94,7 +94,7 @@ void NetworkEngine<T>::take_inputs(const Grid<double>& z_nm, const Planes& plane
   worker.inputs.resize(static_cast<std::size_t>(block.rows * stride));
   pass_.load(z_nm, options_.edge, block, worker.scratch);
   T* out = worker.inputs.data();
-  for (int s = 0; s < pass_.scales(); ++s, out += network::facet_inputs * columns)
+  for (int s = 0; s < pass_.scales(); ++s, out += per_scale_ * columns)
     loops_->facets(pass_.fit(s, worker.scratch), block.rows, lengths_[s], out, stride);
   if (view_.bands() == 0) return;
   for (int y = 0; y < block.rows; ++y)
@@ -178,14 +178,14 @@ void NetworkEngine<T>::pull_back(const Grid<double>& z_nm, const ModelImages& we
     if (view_.bands() > 0)
       loops_->sky_back(planes.heights.at(block.x, block.y + y), planes.samples.data(),
                        static_cast<int>(planes.samples.size()), view_.bands(),
-                       inputs + pass_.scales() * network::facet_inputs * columns,
+                       inputs + pass_.scales() * per_scale_ * columns,
                        given.sky + (y + reach) * planes.tile_stride + reach, planes.to.data(),
                        worker.along_sky.data());
   }
   const std::ptrdiff_t size = std::ptrdiff_t{block.rows} * facet::coefficients * columns;
   for (int s = 0; s < pass_.scales(); ++s)
     loops_->facets_back(pass_.fit(s, worker.scratch), block.rows, lengths_[s],
-                        worker.inputs.data() + s * network::facet_inputs * columns, stride,
+                        worker.inputs.data() + s * per_scale_ * columns, stride,
                         given.coefficients + s * size);
 }
 
@@ -269,8 +269,7 @@ ModelImages NetworkEngine<T>::change(const Grid<double>& z_nm, const Grid<double
     worker.in.resize(static_cast<std::size_t>(block.rows * stride));
     for (int s = 0; s < pass_.scales(); ++s)
       loops_->facets_change(pass_.fit(s, worker.scratch), pass_.fit(s, worker.along), block.rows,
-                            lengths_[s], worker.in.data() + s * network::facet_inputs * columns,
-                            stride);
+                            lengths_[s], worker.in.data() + s * per_scale_ * columns, stride);
     worker.values.resize(static_cast<std::size_t>(units_) * columns);
     worker.slopes.resize(worker.values.size());
     worker.work.resize(2 * static_cast<std::size_t>(widest_) * columns);
@@ -280,7 +279,7 @@ ModelImages NetworkEngine<T>::change(const Grid<double>& z_nm, const Grid<double
       if (view_.bands() > 0)
         loops_->sky_change(planes.heights.at(block.x, block.y + y), moved.at(block.x, block.y + y),
                            planes.samples.data(), static_cast<int>(planes.samples.size()),
-                           view_.bands(), in + pass_.scales() * network::facet_inputs * columns);
+                           view_.bands(), in + pass_.scales() * per_scale_ * columns);
       loops_->forward(layers_.data(), count, worker.inputs.data() + y * stride,
                       worker.values.data(), worker.slopes.data());
       loops_->change(layers_.data(), count, worker.slopes.data(), in, worker.work.data(),

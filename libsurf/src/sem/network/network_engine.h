@@ -50,6 +50,7 @@ class NetworkEngine {
   facet::FacetPass<T> pass_;
   network::SkyView view_;
   const network::Operations<T>* loops_;
+  int per_scale_;           ///< inputs
   std::vector<T> lengths_;  ///< of the scales
   std::vector<T> numbers_;  ///< of the layers, one after the other
   std::vector<network::Layer<T>> layers_;

@@ -13,7 +13,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace surf::network::HWY_NAMESPACE {
 
-template <class T>
+/// `sided`: with the inputs that tell directions.
+template <class T, bool sided>
 struct Loops {
   typedef T V [[gnu::vector_size(SEMSURF_VECTOR_BYTES)]];
   static constexpr int lanes = SEMSURF_VECTOR_BYTES / static_cast<int>(sizeof(T));
@@ -21,6 +22,7 @@ struct Loops {
   static constexpr T hidden_sky = T(0.9);  // below 1: a part of every direction stays visible
   static constexpr int directions = 16;
   static constexpr int most_in_direction = 32;  // samples; two in each of 12 bands are fewer
+  static constexpr int per_band = sky_band_inputs(sided);
 
   HWY_INLINE static V load(const T* p) {
     V v;
@@ -99,6 +101,11 @@ struct Loops {
         store(out + columns + x, f.mean * f.mean_root.inverse_root);
         store(out + 2 * columns + x, f.split.root - 1);
         store(out + 3 * columns + x, f.along * f.along_root.inverse_root);
+        if constexpr (sided) {
+          const Coefficients c(k + x);
+          store(out + 4 * columns + x, c.k3 * f.steep.inverse_root);
+          store(out + 5 * columns + x, c.k2 * f.steep.inverse_root);
+        }
       }
   }
 
@@ -129,8 +136,17 @@ struct Loops {
                 difference = split * s.difference;
         const V along = load(weight + 3 * columns + x) * s.along * f.steep.inverse;
         const V gg = 2 * (load(weight + x) * s.steep - along * f.along), quadratic = along * length;
-        store(out + x, gg * c.k2 + quadratic * (c.k3 * c.k5 + 2 * c.k2 * c.k4));
-        store(out + columns + x, gg * c.k3 + quadratic * (c.k2 * c.k5 + 2 * c.k3 * c.k6));
+        V by_k2 = gg * c.k2 + quadratic * (c.k3 * c.k5 + 2 * c.k2 * c.k4),
+          by_k3 = gg * c.k3 + quadratic * (c.k2 * c.k5 + 2 * c.k3 * c.k6);
+        if constexpr (sided) {
+          const V east = load(weight + 4 * columns + x), north = load(weight + 5 * columns + x);
+          const V both =
+              T(-0.5) * f.steep.inverse_root * f.steep.inverse * (east * c.k3 + north * c.k2);
+          by_k2 += north * f.steep.inverse_root + both * c.k2;
+          by_k3 += east * f.steep.inverse_root + both * c.k3;
+        }
+        store(out + x, by_k2);
+        store(out + columns + x, by_k3);
         store(out + 2 * columns + x, mean - difference + quadratic * c.k2 * c.k2);
         store(out + 3 * columns + x, split * s.mixed + quadratic * c.k3 * c.k2);
         store(out + 4 * columns + x, mean + difference + quadratic * c.k3 * c.k3);
@@ -154,6 +170,11 @@ struct Loops {
         store(out + 2 * columns + x, length * (s.difference * (d.k6 - d.k4) + s.mixed * d.k5));
         store(out + 3 * columns + x,
               s.along * (length * quadratic - f.along * dgg) * f.steep.inverse);
+        if constexpr (sided) {
+          const V less = T(-0.25) * f.steep.inverse * dgg;
+          store(out + 4 * columns + x, f.steep.inverse_root * (d.k3 + c.k3 * less));
+          store(out + 5 * columns + x, f.steep.inverse_root * (d.k2 + c.k2 * less));
+        }
       }
   }
 
@@ -175,9 +196,9 @@ struct Loops {
 
   HWY_INLINE static void sky(const T* z, const SkySample<T>* samples, int count, int bands,
                              T* out) {
-    for (int i = 0; i < (2 * bands + 1) * columns; i += lanes) store(out + i, V{});
+    for (int i = 0; i < sky_inputs(bands, sided) * columns; i += lanes) store(out + i, V{});
     const V near[2] = {load(z), load(z + lanes)};
-    V open[2] = {};
+    T* const open = out + per_band * bands * columns;
     for (int i = 0; i < count;) {
       V seen[2] = {V{} + T(1) / directions, V{} + T(1) / directions};
       for (bool last = false; !last;) {
@@ -193,20 +214,30 @@ struct Loops {
           }
         }
         const SkySample<T>& a = samples[i - 1];
-        T* const mean = out + 2 * a.band * columns;
+        T* const mean = out + per_band * a.band * columns;
         for (int v = 0; v < 2; ++v) {
           increase(mean + v * lanes, a.weight * sum[v]);
           increase(mean + columns + v * lanes, a.weight * squares[v]);
+          if constexpr (sided) {
+            increase(mean + 2 * columns + v * lanes, a.weight * a.east * sum[v]);
+            increase(mean + 3 * columns + v * lanes, a.weight * a.north * sum[v]);
+          }
         }
       }
-      for (int v = 0; v < 2; ++v) open[v] += seen[v];
+      const SkySample<T>& a = samples[i - 1];
+      for (int v = 0; v < 2; ++v) {
+        increase(open + v * lanes, seen[v]);
+        if constexpr (sided) {
+          increase(open + columns + v * lanes, a.east * seen[v]);
+          increase(open + 2 * columns + v * lanes, a.north * seen[v]);
+        }
+      }
     }
-    for (int v = 0; v < 2; ++v) store(out + 2 * bands * columns + v * lanes, open[v]);
   }
 
   HWY_INLINE static void sky_back(const T* z, const SkySample<T>* samples, int count, int bands,
                                   const T* weight, T* dz, const std::ptrdiff_t* to, T* work) {
-    const T* const open = weight + 2 * bands * columns;
+    const T* const open = weight + per_band * bands * columns;
     V own[2] = {};
     for (int first = 0, end = 0; first < count; first = end) {
       while (!samples[end++].last) {
@@ -217,7 +248,11 @@ struct Loops {
         // The sky left open by the samples before and behind: the product without the sample
         // itself, without a division.
         V sine[most_in_direction], rate[most_in_direction], before[most_in_direction];
-        V seen = load(open + x) * (T(1) / directions);
+        V seen = load(open + x);
+        if constexpr (sided)
+          seen += samples[first].east * load(open + columns + x) +
+                  samples[first].north * load(open + 2 * columns + x);
+        seen *= T(1) / directions;
         for (int i = first; i < end; ++i) {
           const Sight sight(near, z + x + samples[i].offset, samples[i]);
           sine[i - first] = sight.sine;
@@ -228,9 +263,12 @@ struct Loops {
         V behind = V{} + T(1);
         for (int i = end - 1; i >= first; --i) {
           const V s = sine[i - first], up = positive(s) * hidden_sky;
-          const T* const mean = weight + 2 * samples[i].band * columns + x;
-          const V by_sine = samples[i].weight * (load(mean) + 2 * s * load(mean + columns)) -
-                            2 * up * (before[i - first] * behind);
+          const T* const mean = weight + per_band * samples[i].band * columns + x;
+          V of_band = load(mean) + 2 * s * load(mean + columns);
+          if constexpr (sided)
+            of_band += samples[i].east * load(mean + 2 * columns) +
+                       samples[i].north * load(mean + 3 * columns);
+          const V by_sine = samples[i].weight * of_band - 2 * up * (before[i - first] * behind);
           behind -= behind * up * s;
           const V change = by_sine * rate[i - first];
           store(work + i * columns + x, change);
@@ -250,7 +288,8 @@ struct Loops {
 
   HWY_INLINE static void sky_change(const T* z, const T* dz, const SkySample<T>* samples, int count,
                                     int bands, T* out) {
-    for (int i = 0; i < (2 * bands + 1) * columns; i += lanes) store(out + i, V{});
+    for (int i = 0; i < sky_inputs(bands, sided) * columns; i += lanes) store(out + i, V{});
+    T* const open = out + per_band * bands * columns;
     for (int x = 0; x < columns; x += lanes)
       for (int i = 0; i < count;) {
         V seen = V{} + T(1) / directions, change = {};  // of seen
@@ -259,13 +298,21 @@ struct Loops {
           last = a.last;
           const Sight sight(load(z + x), z + x + a.offset, a);
           const V ds = (load(dz + x + a.offset) - load(dz + x)) * sight.rate;
-          T* const mean = out + 2 * a.band * columns + x;
+          T* const mean = out + per_band * a.band * columns + x;
           increase(mean, a.weight * ds);
           increase(mean + columns, a.weight * 2 * sight.sine * ds);
+          if constexpr (sided) {
+            increase(mean + 2 * columns, a.weight * a.east * ds);
+            increase(mean + 3 * columns, a.weight * a.north * ds);
+          }
           change = sight.left(change) - 2 * hidden_sky * positive(sight.sine) * ds * seen;
           seen = sight.left(seen);
         }
-        increase(out + 2 * bands * columns + x, change);
+        increase(open + x, change);
+        if constexpr (sided) {
+          increase(open + columns + x, samples[i - 1].east * change);
+          increase(open + 2 * columns + x, samples[i - 1].north * change);
+        }
       }
   }
 

@@ -9,9 +9,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace surf::network::HWY_NAMESPACE {
 
-template <class T>
+template <class T, bool sided>
 const Operations<T>* all() {
-  using L = Loops<T>;
+  using L = Loops<T, sided>;
   static constexpr Operations<T> operations{.columns = L::columns,
                                             .facets = L::facets,
                                             .facets_back = L::facets_back,
@@ -24,8 +24,12 @@ const Operations<T>* all() {
                                             .change = L::change};
   return &operations;
 }
-const Operations<float>* in_floats() { return all<float>(); }
-const Operations<double>* in_doubles() { return all<double>(); }
+const Operations<float>* in_floats(bool sided) {
+  return sided ? all<float, true>() : all<float, false>();
+}
+const Operations<double>* in_doubles(bool sided) {
+  return sided ? all<double, true>() : all<double, false>();
+}
 
 }  // namespace surf::network::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -37,12 +41,12 @@ HWY_EXPORT(in_floats);
 HWY_EXPORT(in_doubles);
 
 template <>
-const Operations<float>& operations<float>() {
-  return *HWY_DYNAMIC_DISPATCH(in_floats)();
+const Operations<float>& operations<float>(bool sided) {
+  return *HWY_DYNAMIC_DISPATCH(in_floats)(sided);
 }
 template <>
-const Operations<double>& operations<double>() {
-  return *HWY_DYNAMIC_DISPATCH(in_doubles)();
+const Operations<double>& operations<double>(bool sided) {
+  return *HWY_DYNAMIC_DISPATCH(in_doubles)(sided);
 }
 
 }  // namespace surf::network

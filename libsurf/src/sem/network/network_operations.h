@@ -7,7 +7,12 @@
 
 namespace surf::network {
 
-inline constexpr int facet_inputs = 4;  ///< inputs per scale
+// Of networks that tell directions (`sided`), and of others.
+constexpr int facet_inputs(bool sided) { return sided ? 6 : 4; }     ///< per scale
+constexpr int sky_band_inputs(bool sided) { return sided ? 4 : 2; }  ///< per band
+constexpr int sky_inputs(int bands, bool sided) {
+  return bands == 0 ? 0 : bands * sky_band_inputs(sided) + (sided ? 3 : 1);
+}
 
 /// A layer in the form that the loops need: see DenseLayer.
 template <class T>
@@ -24,6 +29,7 @@ struct SkySample {
   std::ptrdiff_t offset;
   T square;  ///< of the distance, nm^2
   T weight;
+  T east, north;  ///< the unit vector of its direction
   int band;
   bool ends_band;  ///< the last sample of its direction in the band
   bool last;       ///< the last sample of its direction
@@ -44,7 +50,8 @@ struct Operations {
   void (*facets_change)(const T* k, const T* dk, int rows, T length, T* out, std::ptrdiff_t stride);
 
   /// Computes the sky inputs of a row from the heights `z` at its first pixel: mean and mean square
-  /// of each band, then the visible sky.
+  /// of each band (sided: and the means along x and y), then the visible sky (and its mean
+  /// direction).
   void (*sky)(const T* z, const SkySample<T>* samples, int count, int bands, T* out);
   /// Adds the weights of the heights to `dz`, where sample i lies at to[i]; `work` holds a
   /// row for each sample.
@@ -64,6 +71,6 @@ struct Operations {
 
 /// The fastest loops that the processor supports.
 template <class T>
-const Operations<T>& operations();
+const Operations<T>& operations(bool sided);
 
 }  // namespace surf::network

@@ -78,8 +78,9 @@ std::vector<SkySample<T>> in_plane(const SkyView& view, std::ptrdiff_t stride) {
   std::vector<SkySample<T>> samples;
   for (const SkyView::Sample& s : view.samples()) {
     if (!samples.empty() && samples.back().band != s.band) samples.back().ends_band = true;
-    samples.push_back({s.dy * stride + s.dx, T(s.distance_nm * s.distance_nm), T(s.weight), s.band,
-                       s.last, s.last});
+    const double steps = std::hypot(s.dx, s.dy);
+    samples.push_back({s.dy * stride + s.dx, T(s.distance_nm * s.distance_nm), T(s.weight),
+                       T(s.dx / steps), T(s.dy / steps), s.band, s.last, s.last});
   }
   return samples;
 }

@@ -26,7 +26,6 @@ class SkyView {
   SkyView(const std::vector<double>& edges_nm, double pitch_nm);
 
   int bands() const { return bands_; }
-  int inputs() const { return bands_ == 0 ? 0 : 2 * bands_ + 1; }
   int reach() const { return reach_; }  ///< in samples
   const std::vector<Sample>& samples() const { return samples_; }
 

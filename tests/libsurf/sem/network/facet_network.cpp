@@ -38,8 +38,10 @@ DenseLayer random_layer(int inputs, int outputs, RandomStream& random) {
   return layer;
 }
 
-FacetNetworkParameters some_network(std::vector<int> hidden = {11, 6}, bool sky = true) {
+FacetNetworkParameters some_network(std::vector<int> hidden = {11, 6}, bool sky = true,
+                                    bool sided = false) {
   FacetNetworkParameters p;
+  p.sided = sided;
   p.scales = {{5, 0.6}, {7, 0.8485}, {15, 2.4}, {9, 0}};
   if (sky) p.sky_edges_nm = {0, 3, 9, 30};
   p.channels = {{"SE", 0.9}, {"BSE", 0.2}};
@@ -59,13 +61,18 @@ std::shared_ptr<const ImageModel> network(const FacetNetworkParameters& p = some
   return make_facet_network(scope, p);
 }
 
+std::shared_ptr<const ImageModel> sided_network() {
+  return network(some_network({11, 6}, true, true));
+}
+
 TEST(FacetNetwork, InstructionSetsAgreeAndDoNotDependOnThreads) {
   expect_same_on_every_target([] { return network(); }, rough_field(50, 60));
+  expect_same_on_every_target([] { return sided_network(); }, rough_field(50, 60));
 }
 
 /// The one input i of a network, as a channel: its last layer inverts o + sqrt(1 + o^2).
-double input(int i, const HeightField& field, int x, int y) {
-  FacetNetworkParameters p = some_network({});
+double input(int i, const HeightField& field, int x, int y, bool sided = false) {
+  FacetNetworkParameters p = some_network({}, true, sided);
   DenseLayer& layer = p.layers[0];
   layer.outputs = 1;
   layer.weights.assign(layer.inputs, 0.0);
@@ -92,6 +99,40 @@ TEST(FacetNetwork, InputsAreWhatTheFormulasSayOfAParaboloid) {
                 std::pow(1 + std::pow(0.5 * 0.014 * length, 2), 0.25) - 1, 1e-9);
     EXPECT_NEAR(input(4 * s + 3, bowl, 50, 30), c(length * 0.5 * 0.02 * g2 / (1 + g2)), 1e-9);
   }
+}
+
+TEST(FacetNetwork, SidedInputsSayWhereTheSurfaceFacesAndWhatHidesTheSky) {
+  // A wall of slope 0.75 that rises towards +x, and one towards -y.
+  const HeightField east = sampled(61, 61, 2, [](int x, int) { return 0.75 * 2 * x; });
+  const HeightField south = sampled(61, 61, 2, [](int, int y) { return -0.75 * 2 * y; });
+  const double steep = 0.75 / std::pow(1 + 0.75 * 0.75, 0.25);
+  for (int s = 0; s < 4; ++s) {
+    EXPECT_NEAR(input(6 * s + 4, east, 30, 30, true), steep, 1e-9);
+    EXPECT_NEAR(input(6 * s + 5, east, 30, 30, true), 0, 1e-9);
+    EXPECT_NEAR(input(6 * s + 4, south, 30, 30, true), 0, 1e-9);
+    EXPECT_NEAR(input(6 * s + 5, south, 30, 30, true), -steep, 1e-9);
+  }
+  // What rises hides the sky there: the mean direction of what is open is the other one.
+  for (int band = 0; band < 3; ++band) {
+    EXPECT_GT(input(24 + 4 * band + 2, east, 30, 30, true), 0.2);
+    EXPECT_NEAR(input(24 + 4 * band + 3, east, 30, 30, true), 0, 1e-9);
+    EXPECT_LT(input(24 + 4 * band + 3, south, 30, 30, true), -0.2);
+  }
+  EXPECT_LT(input(24 + 13, east, 30, 30, true), -0.1);
+  EXPECT_NEAR(input(24 + 14, east, 30, 30, true), 0, 1e-9);
+  EXPECT_GT(input(24 + 14, south, 30, 30, true), 0.1);
+}
+
+TEST(FacetNetwork, SidedInputsKeepTheOthers) {
+  const HeightField field = rough_field(40, 33);
+  const auto same = [&](int sided, int plain) {
+    EXPECT_EQ(input(sided, field, 20, 16, true), input(plain, field, 20, 16)) << plain;
+  };
+  for (int s = 0; s < 4; ++s)
+    for (int i = 0; i < 4; ++i) same(6 * s + i, 4 * s + i);
+  for (int band = 0; band < 3; ++band)
+    for (int i = 0; i < 2; ++i) same(24 + 4 * band + i, 16 + 2 * band + i);
+  same(36, 22);
 }
 
 TEST(FacetNetwork, SkyInputsAreWhatTheFormulasSayInACone) {
@@ -160,14 +201,16 @@ TEST(FacetNetwork, KnowsNothingOfTheHeightAboveZero) {
 
 TEST(FacetNetwork, FloatIsAsGoodAsDouble) {
   const HeightField field = rough_field(70, 50);
-  const auto fast = network()->linearize(field),
-             exact = network()->linearize(field, {.double_precision = true});
-  for (std::size_t ch = 0; ch < 2; ++ch)
-    EXPECT_LT(largest_difference(fast->images()[ch], exact->images()[ch]),
-              2e-4 * largest(exact->images()[ch]));
-  const ModelImages w = random_weights(field, 2);
-  const Grid<double> g = exact->gradient(w);
-  EXPECT_LT(largest_difference(fast->gradient(w), g), 5e-4 * largest(g));
+  for (const auto& model : {network(), sided_network()}) {
+    const auto fast = model->linearize(field),
+               exact = model->linearize(field, {.double_precision = true});
+    for (std::size_t ch = 0; ch < 2; ++ch)
+      EXPECT_LT(largest_difference(fast->images()[ch], exact->images()[ch]),
+                2e-4 * largest(exact->images()[ch]));
+    const ModelImages w = random_weights(field, 2);
+    const Grid<double> g = exact->gradient(w);
+    EXPECT_LT(largest_difference(fast->gradient(w), g), 5e-4 * largest(g));
+  }
 }
 
 TEST(FacetNetwork, RootsAreAsGoodAsSinglePrecision) {
@@ -194,6 +237,7 @@ TEST(FacetNetwork, RootsAreAsGoodAsSinglePrecision) {
 TEST(FacetNetwork, GradientIsTheTransposeWhereTilesMeet) {
   const HeightField field = rough_field(610, 530);
   for (const Edge edge : all_edges) expect_adjoint(*network(), field, edge, 1e-12);
+  expect_adjoint(*sided_network(), field, Edge::mirror, 1e-12);
   const auto fast = network()->linearize(field),
              exact = network()->linearize(field, {.double_precision = true});
   const ModelImages w = random_weights(field, 2);
@@ -211,8 +255,8 @@ TEST(FacetNetwork, LinearizationIsExact) {
     return r2 < 900 ? std::sqrt(900 - r2) : 0.0;
   });
   for (const auto& hidden : {std::vector<int>{}, {7}, {11, 6}})
-    for (const bool sky : {true, false}) {
-      const auto model = network(some_network(hidden, sky));
+    for (const auto& [sky, sided] : {std::pair{true, false}, {false, false}, {true, true}}) {
+      const auto model = network(some_network(hidden, sky, sided));
       for (const Edge edge : all_edges) {
         SCOPED_TRACE(std::to_string(hidden.size()) + " hidden layers, edge " +
                      std::to_string(int(edge)));
@@ -351,6 +395,50 @@ TEST(FitFacetNetwork, LearnsWhatALinearBankCannotAndSaysHowFarItIsOff) {
   // The residual on the training images, less their noise, is about the one without noise.
   EXPECT_NEAR(fit.residuals[0].rms / fit.residuals[0].mean_signal,
               judged[0].rms / judged[0].mean_signal, 0.03);
+}
+
+TEST(FitFacetNetwork, LearnsWhatADetectorAtASideSees) {
+  // Lambert's law, lit from +x: a network without sides cannot tell the two flanks of a hill apart.
+  class Lambert final : public ImageModel {
+   public:
+    const std::vector<std::string>& channels() const override { return names_; }
+    const ModelScope& scope() const override { return scope_; }
+    ModelImages predict(const HeightField& field, const ModelOptions&) const override {
+      const int w = field.z_nm.width(), h = field.z_nm.height();
+      ModelImages images(1, Grid<double>(w, h));
+      for (int y = 0; y < h; ++y)
+        for (int x = 0; x < w; ++x) {
+          const double slope =
+              (field.z_nm(std::min(x + 1, w - 1), y) - field.z_nm(std::max(x - 1, 0), y)) / 4;
+          images[0](x, y) = 0.5 - 0.3 * std::tanh(slope);
+        }
+      return images;
+    }
+    std::unique_ptr<Linearization> linearize(const HeightField&,
+                                             const ModelOptions&) const override {
+      return nullptr;
+    }
+
+   private:
+    std::vector<std::string> names_{"BSE-right"};
+    ModelScope scope_;
+  };
+  std::vector<TrainingImage> images;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed)
+    images.push_back(taught_by(Lambert(), seed, 0.05));
+  const auto held = taught_by(Lambert(), 77, 1e-6);
+  ModelScope scope;
+  scope.pixel_nm = 2;
+  const auto off = [&](bool sided) {
+    FacetNetworkFitOptions o = quick();
+    o.sided = sided;
+    const FacetNetworkFit fit = fit_facet_network(images, {"BSE-right"}, o);
+    EXPECT_EQ(fit.parameters.sided, sided);
+    return residuals_of(*make_facet_network(scope, fit.parameters), {held})[0].rms;
+  };
+  const double sided = off(true), blind = off(false);
+  EXPECT_LT(sided, 0.025);
+  EXPECT_LT(sided, 0.25 * blind);
 }
 
 TEST(FitFacetNetwork, SameNumbersOnAnyNumberOfThreads) {
