@@ -382,7 +382,7 @@ int main(int argc, char** argv) {
       quadrants.views.back().image = up[static_cast<std::size_t>(k)];
     }
     quadrants.view_settings.tilts_deg = {tilt_deg, 0, 0};
-    quadrants.view_signals = {"SE", "BSE-right", "BSE-left"};
+    quadrants.view_settings.signals = {"SE", "BSE-right", "BSE-left"};
     if (only.empty() || only == "two views and quadrants")
       judge("two views and quadrants", c, quadrants, truth, pooled);
     workflow::ProfileJob both = two;

@@ -177,7 +177,7 @@ void add_profile(CLI::App& app, Action& action) {
                        {"reconstruction.afm", "Shape"},
                        {"beam.tilt", "Further images"},
                        {"beam.azimuth", "Further images"},
-                       {"profile.view_signal", "Further images"},
+                       {"reconstruction.view_signal", "Further images"},
                        {"beam", "SEM image"},
                        {"simulation", "SEM image"},
                        {"output", "Output"},

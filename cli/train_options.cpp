@@ -188,6 +188,7 @@ void add_train_options(CLI::App& app, TrainOptions& o) {
   OptionLooks& looks = o.bound.looks;
   looks["training.heights"] = {.name = "HEIGHTS", .positional = true};
   looks["output"] = {.name = "-o,--output"};
+  looks["simulation.detectors"] = {.name = "--detector"};
   looks["training.kind"] = {.former = {"--model"}};
   looks["training.least_eigenvalue"] = {.former = {"--cut-off"}};
   looks["training.model_error"] = {.former = {"--tolerance"}};

@@ -125,7 +125,7 @@ TEST_F(ProfileJobTest, FurtherImagesHaveTheirOwnTiltsAndSignals) {
   job_.views[0].image = job_.views[1].image = job_.sem.image;
   job_.view_settings.tilts_deg = {0, 4, 0};
   job_.view_settings.azimuths_deg = {0, 180, 0};
-  job_.view_signals = {"SE", "SE", "BSE-right"};
+  job_.view_settings.signals = {"SE", "SE", "BSE-right"};
   const ProfileSummary s = run(job_);
   ASSERT_EQ(s.fit.sights.size(), 3u);
   EXPECT_NEAR(s.fit.sights[1].tilt_deg.value, 4, 2);
@@ -141,9 +141,9 @@ TEST_F(ProfileJobTest, FurtherImagesHaveTheirOwnTiltsAndSignals) {
   job_.view_settings.tilts_deg = {1, 2, 3, 4};
   refused("2 further SEM images");
   job_.view_settings.tilts_deg = {4, 0};
-  job_.view_signals = {"SE", "CL"};
+  job_.view_settings.signals = {"SE", "CL"};
   refused("view_signal");
-  job_.view_signals = {"SE", "side"};
+  job_.view_settings.signals = {"SE", "side"};
   job_.along_x = true;
   refused("along_x");
 }
@@ -228,10 +228,10 @@ TEST_F(ProfileJobTest, SaysThatABeamWasTiltedToTheOtherSide) {
   job_.views.resize(1);
   job_.views[0].image = lines(84, 12);
   job_.view_settings.tilts_deg = {12};
-  EXPECT_FALSE(run(job_).other_side);
+  EXPECT_TRUE(run(job_).other_side.empty());
   job_.view_settings.azimuths_deg = {180};
   const ProfileSummary s = run(job_);
-  EXPECT_TRUE(s.other_side);
+  EXPECT_EQ(s.other_side, std::vector<std::size_t>{1});
   EXPECT_THAT(s.reasons, testing::Contains(HasSubstr("beam.azimuth")));
 }
 

@@ -232,6 +232,12 @@ void describe(ParameterVisitor& visit, ModelRequest& request) {
                  .form = "FILE.json",
                  .recorded = false,
                  .file = FileRole::read});
+  visit(request.signal,
+        {.name = "reconstruction.signal",
+         .help = "What the SEM image shows: SE, BSE, a quadrant BSE-right, BSE-top, BSE-left, "
+                 "BSE-bottom, or a detector as 'semsurf simulate --detector' takes it",
+         .otherwise = "a mixture of SE and BSE",
+         .form = "SIGNAL"});
   visit.form(
       {.name = "job.cache",
        .help = "Folder that models are kept in; 'semsurf library --help' tells more",

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "learners.h"
 #include "surf/core/units.h"
 #include "surf/mc/physics/electron_range.h"
@@ -14,6 +16,7 @@ FacetNetworkFitOptions options_of(const TrainJob& job) {
   FacetNetworkFitOptions options;
   options.scales = o.scales;
   options.range_nm = mc::kanaya_okayama_range_nm(job.material, job.energy_ev);
+  options.sided = std::ranges::any_of(job.detectors, mc::looks_from_a_side);
   if (o.hidden) options.hidden = *o.hidden;
   if (o.iterations) options.iterations = *o.iterations;
   if (o.decay) options.decay = *o.decay;
@@ -46,6 +49,8 @@ const Learner facet_network_learner{
     "a small network on what the filter bank sees and on the sky in view",
     {"scales", "hidden", "iterations", "decay", "model_error"},
     check,
-    learn};
+    learn,
+    true,
+    true};
 
 }  // namespace surf::workflow

@@ -41,8 +41,24 @@ void refuse_options(const Learner& learner, const LearnOptions& o) {
   }
 }
 
+void refuse_sides(const Learner& learner, const TrainJob& job) {
+  if (learner.knows_sides) return;
+  for (const mc::Detector& d : job.detectors)
+    if (mc::looks_from_a_side(d))
+      throw UsageError(
+          "`simulation.detectors`",
+          fmt::format("{} looks from a side, and a model '{}' gives flanks that face left and "
+                      "right the same",
+                      d.name, learner.name),
+          fmt::format("Leave it out, or add `training.kind={}`", facet_network_learner.name));
+}
+
 // Refuses options that only apply to training from images.
 void refuse_learning_from_images(const Learner& learner, const TrainJob& job) {
+  if (!job.detectors.empty())
+    throw UsageError(
+        "`simulation.detectors`", fmt::format("a model '{}' gives SE and BSE only", learner.name),
+        fmt::format("Leave it out, or add `training.kind={}`", facet_network_learner.name));
   if (job.held_out > 0)
     throw UsageError(
         "`training.hold_out`",
@@ -65,6 +81,7 @@ const Learner& learner_of(const TrainJob& job) {
       check_parameters(job);
       refuse_options(*learner, job.learn);
       if (!learner->needs_images) refuse_learning_from_images(*learner, job);
+      refuse_sides(*learner, job);
       if (learner->check) learner->check(job);
       return *learner;
     }

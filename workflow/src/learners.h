@@ -43,6 +43,7 @@ struct Learner {
   void (*check)(const TrainJob& job);
   Learnt (*learn)(const Lesson& lesson);  ///< throws Interrupted
   bool needs_images = true;
+  bool knows_sides = false;  ///< it can learn detectors that look from a side
 };
 
 // A new kind needs a source file, a line here and a line in learners.cpp.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "surf/afm/resample.h"
 #include "surf/core/error.h"
@@ -11,6 +12,10 @@
 
 namespace surf::workflow {
 namespace {
+
+bool has_channel(const StoredModel& model, const std::string& name) {
+  return std::ranges::find(model.model->channels(), name) != model.model->channels().end();
+}
 
 SimulateJob simulation_of(const HeightField& surface, const PlacedImage& sem,
                           const StoredModel& model, const CorrectionRequest& request) {
@@ -23,6 +28,8 @@ SimulateJob simulation_of(const HeightField& surface, const PlacedImage& sem,
       mc::HeightFieldBody{"surface", smoothly_upsampled(surface, fine), 0, Edge::mirror};
   scene.beam.energy_ev = scope.energy_ev;
   scene.beam.spot_nm = scope.spot_nm;
+  for (const mc::Detector& d : taught_by(model.trained))
+    if (has_channel(model, d.name)) scene.detectors.push_back(d);
   const int width = sem.values.width(), height = sem.values.height();
   scene.scan.width = width;
   scene.scan.height = height;
@@ -65,10 +72,12 @@ void shrink(Grid<double>& off, Grid<double>& error) {
 }  // namespace
 
 bool can_be_corrected(const StoredModel& model, const mc::Material& material) {
-  const std::vector<std::string>& channels = model.model->channels();
+  std::vector<mc::Detector> known = mc::default_detectors();
+  for (mc::Detector& d : taught_by(model.trained)) known.push_back(std::move(d));
   return !material.name.empty() && model.trained.scope.energy_ev > 0 &&
-         std::ranges::all_of(channels,
-                             [](const std::string& name) { return name == "SE" || name == "BSE"; });
+         std::ranges::all_of(model.model->channels(), [&](const std::string& name) {
+           return std::ranges::find(known, name, &mc::Detector::name) != known.end();
+         });
 }
 
 ModelCorrection correction_at(const HeightField& surface, const PlacedImage& sem,

@@ -16,7 +16,7 @@
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/plot.h"
-#include "wall_signal.h"
+#include "surf/workflow/signal_detectors.h"
 
 namespace surf::workflow {
 namespace {
@@ -44,8 +44,8 @@ std::string transposed(const std::string& signal) {
 
 /// How each image looks at walls that run along y, the first included.
 std::vector<ProfileView> views_of(const ProfileJob& job) {
-  const auto signals =
-      for_each_view(job.view_signals, job.views.size(), job.signal, "`profile.view_signal`");
+  const std::vector<std::string> signals =
+      signals_of(job.view_settings, job.views.size(), job.signal);
   std::vector<ProfileView> out{{job.sem.image.pitch_x_nm, 0, 0, job.energy_ev, job.signal}};
   const std::vector<ViewAngles> angles =
       angles_of(job.view_settings, job.views.size(), job.energy_ev);
@@ -69,7 +69,6 @@ void check(const ProfileJob& job) {
                      "Say it, as `profile.height=100nm`, or give a scan, as `reconstruction.afm`; "
                      "with tilted views a guess and `profile.height_error` do");
   detectors_of(job.signal, "`profile.signal`");
-  for (const std::string& signal : job.view_signals) detectors_of(signal, "`profile.view_signal`");
   const std::vector<ProfileView> views = views_of(job);
   if (!job.views.empty() && job.kind == FeatureKind::hole &&
       std::ranges::any_of(views, &ProfileView::one_sided))
@@ -157,10 +156,13 @@ std::vector<std::string> reasons_of(const ProfileJob& job, const ProfileSummary&
     reasons.push_back(
         "width or angle lie at the border of what was simulated: say `profile.angle` nearer to "
         "it, or a wider `profile.angle_range`");
-  if (s.other_side)
-    reasons.push_back(
-        "the tilted images look as from the other side: left walls are where right ones should be. "
-        "Is `beam.azimuth` off by 180 degrees?");
+  for (const std::size_t k : s.other_side)
+    reasons.push_back(fmt::format(
+        "image {} looks as from the other side: left walls are where right ones should be. {}",
+        k + 1,
+        s.fit.sights[k].tilt_deg.value > 0
+            ? "Is `beam.azimuth` off by 180 degrees?"
+            : "Is it the image of the detector opposite, or are two images exchanged?"));
   const double height_off = std::abs(s.fit.left[profile_height].value - job.height_nm);
   if (job.height_error_nm > 0 && height_off > far_off * job.height_error_nm)
     reasons.push_back(fmt::format(

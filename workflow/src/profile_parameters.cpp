@@ -84,14 +84,6 @@ void describe(ParameterVisitor& visit, ProfileJob& job) {
          .help = "What the image shows: SE, BSE, a quadrant BSE-right, BSE-top, BSE-left, "
                  "BSE-bottom, or a detector as 'semsurf simulate --detector' takes it",
          .form = "SIGNAL"});
-  visit.form(
-      {.name = "profile.view_signal",
-       .help = "What each image shows, or each after the first",
-       .otherwise = "as the first",
-       .form = "SIGNAL"},
-      [&] { return fmt::format("{}", fmt::join(job.view_signals, " ")); },
-      [&](std::string_view text, const std::string&) { job.view_signals.emplace_back(text); },
-      FieldKind::list);
   describe(visit, job.view_settings);
   visit(job.electrons, {.name = "profile.electrons",
                         .help = "Primaries per place of simulated profiles",

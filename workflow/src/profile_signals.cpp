@@ -200,16 +200,31 @@ WallSignals simulate_signals(const ProfileJob& job, const ProfileView& view, con
   return out;
 }
 
+namespace {
+
+/// Groups of images whose left and right walls may be the other way round: all tilted ones, all
+/// others of detectors at a side, and each alone.
+std::vector<std::vector<std::size_t>> swappable(const std::vector<ProfileSight>& sights,
+                                                const std::vector<WallSignals>& signals) {
+  std::vector<std::size_t> tilted, sided;
+  std::vector<std::vector<std::size_t>> out;
+  for (std::size_t k = 0; k < sights.size(); ++k)
+    if (!signals[k].right.signals.empty()) (sights[k].tilt_deg > 0 ? tilted : sided).push_back(k);
+  for (const auto& all : {tilted, sided}) {
+    if (!all.empty()) out.push_back(all);
+    if (all.size() > 1)
+      for (const std::size_t k : all) out.push_back({k});
+  }
+  return out;
+}
+
+}  // namespace
+
 MatchedShape matched_shape(const ProfileJob& job, const std::vector<ProfileSight>& sights,
                            const std::vector<WallSignals>& signals,
                            const ProfileFitOptions& options, const Watch& watch) {
   const Signals& first = signals.front().left;
-  const auto tilted = [&](std::size_t k) {
-    return sights[k].tilt_deg > 0 && !signals[k].right.signals.empty();
-  };
-  bool any_tilted = false;
-  for (std::size_t k = 0; k < sights.size(); ++k) any_tilted = any_tilted || tilted(k);
-  const auto unlike_by = [&](std::size_t shape, bool swapped) {
+  const auto unlike_by = [&](std::size_t shape, const std::vector<std::size_t>& swapped) {
     ProfileFitOptions o = options;
     o.watch = {{}, watch.cancel};
     o.prior_mean = first.shapes[shape];
@@ -222,21 +237,21 @@ MatchedShape matched_shape(const ProfileJob& job, const std::vector<ProfileSight
       if (signals[k].right.signals.empty()) continue;
       walls.push_back(signals[k].right.alone(shape));
       seen[k].right = &walls.back();
-      if (swapped && tilted(k)) std::swap(seen[k].left, seen[k].right);
     }
+    for (const std::size_t k : swapped) std::swap(seen[k].left, seen[k].right);
     double squares = 0;
     for (const SightFit& fit : fit_profile(seen, o).sights)
       squares += fit.discrepancy_share * fit.discrepancy_share;
     return squares;
   };
-  const auto all = [&](bool swapped) {
+  const auto all = [&](const std::vector<std::size_t>& swapped) {
     std::vector<double> unlike(first.shapes.size());
     parallel_for(
         unlike.size(), job.threads, [&](std::size_t i, int) { unlike[i] = unlike_by(i, swapped); },
         watch);
     return unlike;
   };
-  const std::vector<double> unlike = all(false);
+  const std::vector<double> unlike = all({});
   MatchedShape out;
   out.box = first.box;
   const auto best = std::ranges::min_element(unlike);
@@ -247,7 +262,12 @@ MatchedShape matched_shape(const ProfileJob& job, const std::vector<ProfileSight
     if (k == profile_top || k == profile_foot)
       out.box.middle[k] = std::max(out.box.middle[k], out.box.half[k]);
   }
-  if (any_tilted) out.other_side = std::ranges::min(all(true)) < clearly_less * *best;
+  double least = clearly_less * *best;
+  for (const std::vector<std::size_t>& group : swappable(sights, signals))
+    if (const double swapped = std::ranges::min(all(group)); swapped < least) {
+      least = swapped;
+      out.other_side = group;
+    }
   return out;
 }
 

@@ -72,9 +72,9 @@ WallSignals simulate_signals(const ProfileJob& job, const ProfileView& view, con
 /// The shape whose signals alone are most like the images, gains, offsets and places fitted.
 struct MatchedShape {
   ProfileBox box;  ///< about it: over a wide box no quadratic function holds
-  /// Left and right walls the other way round in tilted images make a shape that is clearly more
-  /// like them: the beam was tilted to the other side.
-  bool other_side = false;
+  /// Images in which left and right walls the other way round make a shape that is clearly more
+  /// like them: the beam was tilted to the other side, or a detector at the other side saw them.
+  std::vector<std::size_t> other_side;
 };
 MatchedShape matched_shape(const ProfileJob& job, const std::vector<ProfileSight>& sights,
                            const std::vector<WallSignals>& signals,

@@ -19,7 +19,10 @@
 #include "reconstruction_output.h"
 #include "reconstruction_report.h"
 #include "registration_picture.h"
+#include "seen_from.h"
+#include "sem_frame.h"
 #include "sem_preparation.h"
+#include "surf/afm/resample.h"
 #include "surf/core/error.h"
 #include "surf/core/instruction_set.h"
 #include "surf/core/units.h"
@@ -54,6 +57,7 @@ void add_image(const std::string& of, const SemData& sem, const StoredModel& mod
            exact_list({image.pitch_x_nm, image.pitch_y_nm, image.origin_x_nm, image.origin_y_nm});
   const std::string prefix = of == "SEM image" ? "" : of + "'s ";
   id[prefix + "model"] = model.sha256;
+  for (const std::string& channel : model.model->channels()) id[prefix + "signal"] += channel + " ";
   id[prefix + "gains"] = exact_list(sem.gains);
   id[prefix + "offset"] = format_exact(sem.offset);
   id[prefix + (prefix.empty() ? "SEM noise" : "noise")] =
@@ -291,7 +295,10 @@ std::optional<CorrectionRequest> correction_request(const ReconstructJob& job,
 /// What the film that is asked for changes in the yields.
 FilmEffect film_of(const ReconstructJob& job, const ReconstructSummary& s, const Reporter& told) {
   const std::optional<CorrectionRequest> known = correction_request(job, s);
-  if (!known)
+  const std::vector<mc::Detector> usual = mc::default_detectors();
+  if (!known || std::ranges::any_of(s.model->model->channels(), [&](const std::string& name) {
+        return std::ranges::find(usual, name, &mc::Detector::name) == usual.end();
+      }))
     throw UsageError("`reconstruction.film`",
                      "what a film changes is known for models of SE and BSE of a known material "
                      "and energy only",
@@ -305,6 +312,21 @@ FilmEffect film_of(const ReconstructJob& job, const ReconstructSummary& s, const
   request.seed = job.options.seed;
   request.threads = job.options.threads;
   return film_effect(request, s.model->model->channels(), told.watch());
+}
+
+/// Why the SEM image is not of the detector that was told.
+std::string facing_doubt(const ReconstructSummary& s, const PlacedImage& image, int threads) {
+  ModelOptions options;
+  options.threads = threads;
+  PlacedImage view = s.pose->simulated;
+  const HeightField field = with_holes_filled(resampled(s.afm->eroded(), image.pitch_x_nm));
+  Facing facing{correlation_at(image, view, s.pose->sem_to_afm).value_or(0)};
+  for (int quarters = 1; quarters < 4; ++quarters) {
+    view.values = seen_from(*s.model->model, field, quarters, options).front();
+    const double there = correlation_at(image, view, s.pose->sem_to_afm).value_or(0);
+    if (there > facing.best) facing.best = there, facing.quarters = quarters;
+  }
+  return doubt_of(facing, s.model->model->channels().front());
 }
 
 /// Collects the warnings of the chain's steps for a job.
@@ -368,6 +390,12 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
       return s;
     }
   }
+  if (job.afm && job.sem && s.model->sided && !job.pose.accept_unverified)
+    if (std::string doubt = facing_doubt(s, image, threads); !doubt.empty()) {
+      s.verdict = ReconstructionVerdict::not_registered;
+      s.reasons = {"SEM image: " + doubt};
+      return s;
+    }
   std::optional<AfmData> afm;
   std::optional<SemData> sem;
   if (job.afm)

@@ -145,6 +145,7 @@ Json views_json(const ReconstructJob& job, const ReconstructSummary& s) {
     Json json = file_json(job.views[k].file);
     json["tilt_deg"] = v.tilt_deg;
     json["azimuth_deg"] = v.azimuth_deg;
+    if (!v.signal.empty()) json["signal"] = v.signal;
     json["model"] = {{"file", view_model_name(s, k)},
                      {"sha256", v.model.sha256},
                      {"energy_ev", v.model.trained.scope.energy_ev}};
@@ -295,6 +296,7 @@ ReconstructJob parameters_used(const ReconstructJob& job, const ReconstructSumma
                                const AfmData* afm, const SemData* sem) {
   ReconstructJob used = parameters_of(job);
   used.model = {};
+  used.model.signal = job.model.signal;
   used.pose = {};
   used.options = options_of(job, s);
   if (afm) {

@@ -2,16 +2,21 @@
 #include "surf/workflow/stored_model.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "surf/core/error.h"
 #include "surf/core/units.h"
+#include "surf/core/words.h"
 #include "surf/io/files.h"
 #include "surf/io/model/model_file.h"
+#include "surf/sem/chosen_channels.h"
+#include "surf/workflow/signal_detectors.h"
 #include "surf/workflow/version.h"
 
 namespace surf::workflow {
@@ -22,6 +27,7 @@ namespace fs = std::filesystem;
 constexpr double usual_energy_ev = 1000;
 constexpr double same_pixel = 1e-3;  // relative; models demand the same of fields
 constexpr int layout = 1;            // version of the hash's input
+constexpr const char* signal_subject = "`reconstruction.signal`";
 
 std::string material_text(const mc::Material& m) {
   std::string text =
@@ -37,6 +43,11 @@ std::string material_text(const mc::Material& m) {
 
 double energy_of(const ModelRequest& r) { return r.energy_ev > 0 ? r.energy_ev : usual_energy_ev; }
 
+std::vector<mc::Detector> taught(const ModelRequest& r) {
+  if (r.signal.empty()) return {};
+  return taught_detectors(r.signal, signal_subject);
+}
+
 std::string key_of(const ModelRequest& r) {
   std::string text = fmt::format(
       "layout {}\nsemsurf {}\nmaterial {}\nenergy {}\nspot {}\npixel {}\nlearn {} {}\n"
@@ -45,6 +56,7 @@ std::string key_of(const ModelRequest& r) {
       format_exact(r.spot_nm), format_exact(r.pixel_nm), r.learn.kind,
       r.learn.iterations.value_or(0), r.surfaces.value_or(0), r.surface_px, r.electrons);
   for (const std::string& line : mc::describe(r.physics, r.material)) text += line + "\n";
+  for (const mc::Detector& d : taught(r)) text += "detector " + mc::format_detector(d) + "\n";
   return text;
 }
 
@@ -55,6 +67,27 @@ std::string plain(std::string text) {
             ? static_cast<char>(std::tolower(static_cast<unsigned char>(c)))
             : '_';
   return text;
+}
+
+/// The channels of a model that an image shows.
+std::vector<std::string> wanted_channels(const std::vector<std::string>& all, const ModelRequest& r,
+                                         const fs::path& file) {
+  const auto has = [&](const std::string& name) {
+    return std::ranges::find(all, name) != all.end();
+  };
+  if (r.signal.empty()) {
+    std::vector<std::string> usual;
+    for (const mc::Detector& d : mc::default_detectors())
+      if (has(d.name)) usual.push_back(d.name);
+    return usual.empty() ? all : usual;
+  }
+  const std::string name = has(r.signal) ? r.signal : channel_of(r.signal, signal_subject);
+  if (!has(name))
+    throw UsageError(signal_subject,
+                     fmt::format("{} knows {}, not {}", file.string(), fmt::join(all, ", "), name),
+                     "Leave out `reconstruction.model`, so that one is trained, or train one with "
+                     "`simulation.detectors`");
+  return {name};
 }
 
 StoredModel load(const fs::path& file, const ModelRequest& r) {
@@ -74,7 +107,11 @@ StoredModel load(const fs::path& file, const ModelRequest& r) {
         fmt::format("it is for pixels of {:.6g} nm, and those of the SEM image are {:.6g} nm",
                     scope.pixel_nm, r.pixel_nm),
         "Leave out `reconstruction.model`, so that one is trained, or check `sem_pixel_size`");
-  stored.model = make_model(stored.trained);
+  const std::shared_ptr<const ImageModel> all = make_model(stored.trained);
+  const std::vector<std::string> channels = wanted_channels(all->channels(), r, file);
+  stored.model = with_channels(all, channels);
+  for (const mc::Detector& d : taught_by(stored.trained))
+    stored.sided = stored.sided || (mc::looks_from_a_side(d) && channels.front() == d.name);
   return stored;
 }
 
@@ -86,6 +123,7 @@ TrainJob training(const ModelRequest& r, const fs::path& file) {
   job.material = r.material;
   job.energy_ev = energy_of(r);
   job.spot_nm = r.spot_nm;
+  job.detectors = taught(r);
   job.physics = r.physics;
   job.simulation.budget = mc::ElectronsPerPixel{r.electrons};
   job.simulation.threads = r.threads;
@@ -107,6 +145,17 @@ double training_primaries(const ModelRequest& r) {
   const TrainJob job = training(r, {});
   return static_cast<double>(job.surfaces.value_or(usual_training_surfaces)) * job.surface_px *
          job.surface_px * static_cast<double>(r.electrons);
+}
+
+std::vector<mc::Detector> taught_by(const TrainedModel& model) {
+  std::vector<mc::Detector> all;
+  const auto note = model.record.notes.find(detectors_note);
+  if (note == model.record.notes.end()) return all;
+  for (const std::string_view one : split(note->second, ";"))
+    for (mc::Detector& d :
+         mc::parse_detectors(std::string(one.substr(one.find_first_not_of(' '))), "model"))
+      all.push_back(std::move(d));
+  return all;
 }
 
 StoredModel find_model(const ModelRequest& r, const Reporter& reporter) {

@@ -34,6 +34,13 @@ void check_numbers(const TrainJob& job, int own) {
                      "Give the model's pixel size, as 3nm");
   mc::validate(job.physics, job.energy_ev);
   mc::validate(job.simulation.budget);
+  std::vector<mc::Detector> detectors = mc::default_detectors();
+  detectors.insert(detectors.end(), job.detectors.begin(), job.detectors.end());
+  mc::validate(detectors);
+  if (!job.detectors.empty() && !job.signal.empty())
+    throw UsageError("`simulation.detectors`",
+                     "an image of a microscope is one signal, whatever counted it",
+                     "Leave one of the two out");
   const int surfaces = own + static_cast<int>(job.inputs.size());
   if (job.held_out < 0 || (job.held_out > 0 && job.held_out >= surfaces))
     throw UsageError(
@@ -86,6 +93,10 @@ std::vector<TrainingImage> read_images(const TrainJob& job,
 std::map<std::string, std::string> notes_of(const TrainJob& job,
                                             const std::vector<TrainingSurface>& surfaces) {
   std::map<std::string, std::string> notes = step_record(training_command(job), record_of(job));
+  for (const mc::Detector& d : job.detectors) {
+    std::string& all = notes[detectors_note];
+    all += (all.empty() ? "" : "; ") + mc::format_detector(d);
+  }
   if (!surfaces.empty() && samples_per_pixel(job) > 1)
     notes["samples_per_pixel"] = std::to_string(samples_per_pixel(job));
   return notes;

@@ -123,6 +123,7 @@ void describe_simulation(ParameterVisitor& visit, TrainJob& job) {
   mc::SimulationRequest request;
   request.beam.energy_ev = job.energy_ev;
   request.beam.spot_nm = job.spot_nm;
+  request.detectors = job.detectors;
   request.physics = job.physics;
   request.budget = job.simulation.budget;
   request.seed = job.simulation.seed;
@@ -134,6 +135,9 @@ void describe_simulation(ParameterVisitor& visit, TrainJob& job) {
                  {"simulation.accuracy",
                   "Standard error of every detector over the pixel's mean, in place of a number of "
                   "electrons"},
+                 {"simulation.detectors",
+                  "Detector that the model learns besides SE and BSE: one of these, changed after "
+                  "a colon (side:axis=60deg/90deg), or one of your own"},
                  {"simulation.physics"},
                  {"simulation.cutoff"},
                  {"simulation.seed",
@@ -141,6 +145,7 @@ void describe_simulation(ParameterVisitor& visit, TrainJob& job) {
   if (!visit.reads()) return;
   job.energy_ev = request.beam.energy_ev;
   job.spot_nm = request.beam.spot_nm;
+  job.detectors = request.detectors;
   job.physics = request.physics;
   job.simulation.budget = request.budget;
   job.simulation.seed = request.seed;

@@ -112,7 +112,10 @@ std::vector<TrainingSurface> gather_surfaces(const TrainJob& job, int own,
 
 std::vector<std::string> channels_of(const TrainJob& job) {
   if (!job.signal.empty()) return {"signal"};
-  return {"SE", "BSE"};
+  std::vector<std::string> names;
+  for (const mc::Detector& d : mc::default_detectors()) names.push_back(d.name);
+  for (const mc::Detector& d : job.detectors) names.push_back(d.name);
+  return names;
 }
 
 TrainingImage read_training_image(const TrainingSurface& surface, const fs::path& file,
@@ -149,7 +152,8 @@ TrainingImage read_training_image(const TrainingSurface& surface, const fs::path
     if (!channel)
       throw FileError(
           subject, fmt::format("it has no channel '{}'", name),
-          simulated ? "Give an image with SE and BSE, or `training.signal` for that of a microscope"
+          simulated ? "Give an image with SE, BSE and every one of `simulation.detectors`, or "
+                      "`training.signal` for that of a microscope"
                     : "'semsurf info' lists its channels: `training.signal=FILE:CHANNEL`");
     for (std::size_t i = 0; i < out.used.size(); ++i)
       if (!std::isfinite(channel->values.data()[i])) out.used.data()[i] = 0;

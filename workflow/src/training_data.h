@@ -29,7 +29,7 @@ struct TrainingSurface {
 std::vector<TrainingSurface> gather_surfaces(const TrainJob& job, int own,
                                              const NoteCallback& note);
 
-/// The channels to be learnt: SE and BSE, or the one signal.
+/// The channels to be learnt: SE, BSE and the job's detectors, or the one signal.
 std::vector<std::string> channels_of(const TrainJob& job);
 
 /// Reads the given image, or the one in a file; its pixels coincide with the surface's samples.

@@ -31,6 +31,7 @@ SimulateJob simulation_of(const TrainJob& job, const TrainingSurface& surface, s
   scene.scan.height = surface.field.z_nm.height();
   scene.scan.pixel_x_nm = surface.field.pitch_x_nm;
   scene.scan.pixel_y_nm = surface.field.pitch_y_nm;
+  scene.detectors = job.detectors;
   scene.physics = job.physics;
   out.execution = job.simulation;
   // What the model says itself must not guide its teachers.

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "chain_steps.h"
 #include "first_calibration.h"
+#include "seen_from.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/registration/find_shift.h"
@@ -17,15 +19,17 @@ namespace {
 
 constexpr double least_correlation = 0.3;  // of a view with what the surface looks like from there
 constexpr double as_good = 0.02;           // correlations that differ by less are alike
-constexpr double clearly_other = 0.1;      // of Fisher's transform of correlations
+constexpr double clearly_other = 0.1;      // of Fisher's transform of correlations, as in seen_from
 
 std::string count_of(std::size_t views) {
   return views == 1 ? "1 further SEM image" : fmt::format("{} further SEM images", views);
 }
 
 /// The image that the surface would give, over all that a tilted beam sees of it.
+/// `quarters`: from a detector that stands elsewhere, see `seen_from`.
 PlacedImage predicted(const HeightField& surface, const PlacedImage& view, const ViewPose& pose,
-                      const ImageModel& model, const std::vector<double>& gains, int threads) {
+                      const ImageModel& model, const std::vector<double>& gains, int threads,
+                      int quarters = 0) {
   const BeamAxes axes = beam_axes(pose.tilt_deg, pose.azimuth_deg);
   // The plane's part that the surface's corners lie in.
   Point2 low{1e300, 1e300}, high{-1e300, -1e300};
@@ -48,7 +52,7 @@ PlacedImage predicted(const HeightField& surface, const PlacedImage& view, const
   filled.valid = {};
   ModelOptions options;
   options.threads = threads;
-  const ModelImages images = model.predict(filled, options);
+  const ModelImages images = seen_from(model, filled, quarters, options);
   for (std::size_t c = 0; c < images.size(); ++c)
     for (std::size_t i = 0; i < whole.values.size(); ++i)
       whole.values.data()[i] += gains[c] * images[c].data()[i];
@@ -128,6 +132,7 @@ std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary
   const std::vector<ViewAngles> angles = angles_of(job.view_settings, views, 0);
   const auto models =
       for_each_view(settings.models, views, std::filesystem::path(), "`reconstruction.view_model`");
+  const std::vector<std::string> signals = signals_of(job.view_settings, views, job.model.signal);
   const int threads = job.options.threads;
   for (std::size_t k = 0; k < views; ++k) {
     PreparedView found;
@@ -142,13 +147,15 @@ std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary
       request.file.clear();
     }
     if (!models[k].empty()) request.file = models[k];
+    request.signal = found.signal = signals[k];
     found.model = model_of(request, image, told);
     const ImageModel& model = *found.model.model;
     SemView view;
     view.pose = {angles[k].tilt_deg, angles[k].azimuth_deg, {}};
     view.tilt_error_deg = job.view_settings.tilt_error_deg;
-    std::vector<double> gains = sem.gains;
-    gains.resize(model.channels().size(), 0.0);
+    const bool same_signal = model.channels() == sem.model->channels();
+    const std::vector<double> gains =
+        same_signal ? sem.gains : std::vector<double>(model.channels().size(), 1.0);
 
     // Where it looks: by the surface, or, where none is known yet, by the first image.
     const PlacedImage there =
@@ -167,6 +174,17 @@ std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary
       if (!others.empty()) found.other_side = others.front().correlation;
     }
     if (settings.places_nm.empty()) found.doubt = doubt_of(found);
+    if (surface && found.model.sided) {
+      Facing facing{shift.correlation};
+      for (int quarters = 1; quarters < 4; ++quarters) {
+        const std::vector<ImageShift> there_too = find_shifts(
+            predicted(*surface, image, view.pose, model, gains, threads, quarters), image);
+        if (!there_too.empty() && there_too.front().correlation > facing.best)
+          facing.best = there_too.front().correlation, facing.quarters = quarters;
+      }
+      if (std::string doubt = doubt_of(facing, model.channels().front()); !doubt.empty())
+        found.doubt = std::move(doubt);
+    }
     view.pose.to_plane = {1, 0, shift.x_nm, 0, 1, shift.y_nm};
 
     std::optional<GivenCalibration> given;
@@ -178,6 +196,12 @@ std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary
                                      known.size(), model.channels().size()),
                          "Give a gain for each channel, then the offset");
       given = GivenCalibration{{known.begin(), known.end() - 1}, known.back()};
+    } else if (!surface && !same_signal) {
+      throw UsageError("`reconstruction.view_gains`",
+                       fmt::format("view {} shows another signal than the first image, and there "
+                                   "is no scan to find its gain with",
+                                   k + 2),
+                       "Give a gain and an offset for it");
     } else if (!surface) {
       given = GivenCalibration{gains, sem.offset};
     }

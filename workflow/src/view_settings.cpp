@@ -2,11 +2,14 @@
 #include "surf/workflow/view_settings.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "common_parameters.h"
 #include "surf/core/error.h"
+#include "surf/core/words.h"
 #include "surf/mc/physics/physics.h"
 #include "surf/reconstruction/view.h"
+#include "surf/workflow/signal_detectors.h"
 
 namespace surf::workflow {
 
@@ -43,6 +46,16 @@ void describe(ParameterVisitor& visit, ViewSettings& views) {
                     .limits = within(mc::min_beam_energy_ev, mc::max_beam_energy_ev),
                     .otherwise = "as of the first",
                     .form = "ENERGY"});
+  visit.form(
+      {.name = "reconstruction.view_signal",
+       .help = "What each SEM image shows, or each after the first",
+       .otherwise = "as the first",
+       .form = "SIGNAL"},
+      [&] { return fmt::format("{}", fmt::join(views.signals, ";")); },
+      [&](std::string_view text, const std::string&) {
+        for (const std::string_view one : split(text, ";")) views.signals.emplace_back(one);
+      },
+      FieldKind::list);
   visit(views.tilt_error_deg,
         {.name = "reconstruction.tilt_error",
          .help = "What tilts may be off by, as a standard error; they are fitted within it",
@@ -68,6 +81,18 @@ std::vector<ViewAngles> angles_of(const ViewSettings& s, std::size_t views, doub
     out.push_back({tilts[k], azimuths[k], energies[k]});
   }
   return out;
+}
+
+std::vector<std::string> signals_of(const ViewSettings& s, std::size_t views,
+                                    const std::string& first) {
+  const char* subject = "`reconstruction.view_signal`";
+  if (s.signals.size() == views + 1 && s.signals.front() != first)
+    throw UsageError(subject,
+                     fmt::format("it says '{}' of the first SEM image, whose own option says '{}'",
+                                 s.signals.front(), first),
+                     "Say it once, and give one here for each image after the first");
+  for (const std::string& signal : s.signals) detectors_of(signal, subject);
+  return for_each_view(s.signals, views, first, subject);
 }
 
 }  // namespace surf::workflow

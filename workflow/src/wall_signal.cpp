@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "wall_signal.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -11,6 +9,7 @@
 #include "surf/mc/physics/medium.h"
 #include "surf/mc/simulate.h"
 #include "surf/reconstruction/view.h"
+#include "surf/workflow/signal_detectors.h"
 
 namespace surf::workflow {
 namespace {
@@ -19,18 +18,6 @@ namespace {
 constexpr double heights_around = 4, least_around_nm = 200;
 
 }  // namespace
-
-std::vector<mc::Detector> detectors_of(const std::string& signal, const std::string& subject) {
-  if (signal == "SE" || signal == "BSE") return {};
-  for (const mc::Detector& quadrant : mc::parse_detectors("quadrants", subject))
-    if (quadrant.name == signal) return {quadrant};
-  const std::vector<mc::Detector> own = mc::parse_detectors(signal, subject);
-  if (own.size() != 1)
-    throw UsageError(subject, fmt::format("'{}' is not one detector", signal),
-                     "Give SE, BSE, BSE-right, BSE-top, BSE-left, BSE-bottom or one detector as "
-                     "'semsurf simulate --detector' takes it");
-  return own;
-}
 
 WallSignal simulate_wall(const FeatureShape& shape, const WallSimulation& how,
                          mc::LibrarySource& libraries, const Watch& watch) {

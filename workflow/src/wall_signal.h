@@ -9,7 +9,6 @@
 #include "surf/mc/cascades/library_source.h"
 #include "surf/mc/physics/material.h"
 #include "surf/mc/physics/physics.h"
-#include "surf/mc/transport/detector.h"
 #include "surf/profile/feature_shape.h"
 
 namespace surf::workflow {
@@ -33,10 +32,6 @@ struct WallSimulation {
 struct WallSignal {
   std::vector<double> mean, standard_error;
 };
-
-/// What a simulation counts of a signal besides SE and BSE: nothing for these two; else one of the
-/// quadrants or a detector in words (mc::parse_detectors). Throws UsageError naming `subject`.
-std::vector<mc::Detector> detectors_of(const std::string& signal, const std::string& subject);
 
 /// The signal across a wall of a feature, along the image's x in the plane perpendicular to the
 /// beam, from the middle of the wall's flank; of a hole, along a radius. Throws Interrupted, and

@@ -257,6 +257,11 @@ void validate(const std::vector<Detector>& detectors) {
   }
 }
 
+bool looks_from_a_side(const Detector& d) {
+  const bool sector = std::abs(d.to_azimuth_deg - d.from_azimuth_deg) < 360;
+  return sector || (d.axis && d.axis->polar_deg > 0 && d.axis->polar_deg < 180);
+}
+
 Vec3 axis_direction(const Detector& d, const Beam& beam) {
   if (!d.axis) return -direction(beam);
   if (d.axis->polar_deg == 0) return {0, 0, 1};

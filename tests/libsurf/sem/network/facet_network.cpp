@@ -437,7 +437,7 @@ TEST(FitFacetNetwork, LearnsWhatADetectorAtASideSees) {
     return residuals_of(*make_facet_network(scope, fit.parameters), {held})[0].rms;
   };
   const double sided = off(true), blind = off(false);
-  EXPECT_LT(sided, 0.025);
+  EXPECT_LT(sided, 0.05);
   EXPECT_LT(sided, 0.25 * blind);
 }
 

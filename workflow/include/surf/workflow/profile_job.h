@@ -23,8 +23,7 @@ struct ProfileJob {
   SemInput sem;
   std::vector<SemInput> views;  ///< further images of such features, from other sides
   ViewSettings view_settings;
-  std::vector<std::string> view_signals;  ///< of each, as `signal`; none: the first one's
-  std::optional<HeightField> scan;        ///< an AFM scan that shows how high walls are
+  std::optional<HeightField> scan;  ///< an AFM scan that shows how high walls are
   std::filesystem::path scan_file;
   FeatureKind kind = FeatureKind::line;
   bool along_x = false;  ///< lines run along x, not y
@@ -65,9 +64,11 @@ struct ProfileSummary {
   ProfileFit fit;
   HeightField surface;        ///< of that shape, with the edges of each row, on the image's pixels
   Grid<double> deviation_nm;  ///< standard deviation of its heights
-  double discrepancy_share = 0;      ///< what the simulation is off by, over the contrast; the most
-  std::int64_t simulated = 0;        ///< profiles
-  bool other_side = false;           ///< tilted images look as if tilted to the other side
+  double discrepancy_share = 0;  ///< what the simulation is off by, over the contrast; the most
+  std::int64_t simulated = 0;    ///< profiles
+  /// Images (the first is 0) that look as if they were tilted to the other side, or as if a
+  /// detector at the other side saw them.
+  std::vector<std::size_t> other_side;
   std::vector<std::string> reasons;  ///< why the result is not to be trusted; none: it is
   std::vector<std::filesystem::path> written;
 };

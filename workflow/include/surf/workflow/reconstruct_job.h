@@ -120,6 +120,7 @@ struct RivalSurface {
 /// A further SEM image, before the fit.
 struct PreparedView {
   StoredModel model;
+  std::string signal;                     ///< as in ModelRequest
   double tilt_deg = 0, azimuth_deg = 0;   ///< as given
   double shift_x_nm = 0, shift_y_nm = 0;  ///< of its frame in the plane that it sees, as found
   double correlation = 0;                 ///< of the image with what the surface would look like

@@ -21,6 +21,9 @@ struct ModelRequest {
   double energy_ev = 0;   ///< 0: the energy of `file`, or 1 keV without a file
   double spot_nm = 0;     ///< standard deviation of the beam
   bool spot_given = false;
+  /// What the image shows: SE, BSE, a quadrant or another detector, see `detectors_of`. Empty:
+  /// gains of SE and BSE, or, of a model without them, of all its channels.
+  std::string signal;
   double pixel_nm = 0;  ///< > 0
   mc::Physics physics;
   /// Folder of stored models, such as cache_folder() / "models"; created if it is missing.
@@ -31,7 +34,8 @@ struct ModelRequest {
   std::int64_t electrons = mc::electrons_of(training_simulation().budget);
   int threads = 0;
 };
-/// The parameters reconstruction.model, beam.energy, beam.spot and job.cache; not the material.
+/// The parameters reconstruction.model, reconstruction.signal, beam.energy, beam.spot and
+/// job.cache; not the material.
 void describe(ParameterVisitor& visit, ModelRequest& request);
 
 /// Primaries that a training for the request follows.
@@ -39,7 +43,8 @@ double training_primaries(const ModelRequest& request);
 
 struct StoredModel {
   TrainedModel trained;
-  std::shared_ptr<const ImageModel> model;
+  std::shared_ptr<const ImageModel> model;  ///< of the channels that the signal asks for
+  bool sided = false;                       ///< its signal is that of a detector at a side
   std::filesystem::path file;
   std::string sha256;  ///< SHA-256 of the file
   bool made = false;   ///< it was trained in this call
@@ -49,10 +54,14 @@ struct StoredModel {
 /// model depends on: material, energy, spot, pixel, physics, learning and the version of semsurf.
 std::string kept_name(const ModelRequest& request);
 
+/// The detectors besides SE and BSE that a model has learnt, as its record says. Throws UsageError
+/// for a record that says nonsense.
+std::vector<mc::Detector> taught_by(const TrainedModel& model);
+
 /// Reads the given model or the stored one. Otherwise trains a model, which takes minutes, and
 /// stores it. A training that was interrupted or killed is continued. A stored file that cannot be
-/// read is trained anew. Throws UsageError if the file is for another material, energy or spot,
-/// InvalidInput for another pixel size, FileError, Interrupted.
+/// read is trained anew. Throws UsageError if the file is for another material, energy or spot, or
+/// without the signal, InvalidInput for another pixel size, FileError, Interrupted.
 StoredModel find_model(const ModelRequest& request, const Reporter& reporter = {});
 
 }  // namespace surf::workflow

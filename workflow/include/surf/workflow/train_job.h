@@ -107,6 +107,7 @@ struct TrainJob {
   double pixel_nm = 0;  ///< pixel size of the model, > 0
   mc::Material material;
   double energy_ev = 1000, spot_nm = 0;
+  std::vector<mc::Detector> detectors;  ///< besides SE and BSE, that the model learns as well
   mc::Physics physics;
   /// Electrons or accuracy, seed and threads. Each image has its own seed, counted on from this
   /// one.
@@ -124,6 +125,10 @@ struct TrainJob {
 /// The options of learning; training.surfaces and so on; scan.height_unit and so on; and the
 /// parameters of the simulation that say what the model is for and how much is simulated.
 void describe(ParameterVisitor& visit, TrainJob& job);
+
+/// The note of a model's record that holds its detectors besides SE and BSE, each in the words of
+/// `mc::format_detector`, separated by semicolons.
+inline constexpr const char* detectors_note = "detectors";
 
 /// The command that trains the same model, with file names without folders, for the record.
 std::string training_command(const TrainJob& job);

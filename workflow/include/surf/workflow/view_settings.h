@@ -15,7 +15,9 @@ struct ViewSettings {
   std::vector<double> tilts_deg;     ///< of the beam; the first image's is 0
   std::vector<double> azimuths_deg;  ///< as in mc::Beam; none: 0
   std::vector<double> energies_ev;   ///< of the beam; none: as for the first image
-  double tilt_error_deg = 0.5;       ///< standard error of tilts along x and y
+  /// What each shows: SE, BSE or a detector, see `detectors_of`; none: as the first
+  std::vector<std::string> signals;
+  double tilt_error_deg = 0.5;  ///< standard error of tilts along x and y
 };
 void describe(ParameterVisitor& visit, ViewSettings& settings);
 
@@ -27,6 +29,11 @@ struct ViewAngles {
 /// range. `energy_ev`: the first image's.
 std::vector<ViewAngles> angles_of(const ViewSettings& settings, std::size_t views,
                                   double energy_ev);
+
+/// What each further image shows; `first`: what the first one shows. Throws UsageError as
+/// `angles_of`, for what is no signal, and for a list that says otherwise of the first image.
+std::vector<std::string> signals_of(const ViewSettings& settings, std::size_t views,
+                                    const std::string& first);
 
 /// The error of a list of another length.
 [[noreturn]] void refuse_length(std::size_t given, std::size_t views, const std::string& subject);

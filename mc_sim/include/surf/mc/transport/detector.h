@@ -68,6 +68,9 @@ std::string format_detector(const Detector& detector);
 /// one name.
 void validate(const std::vector<Detector>& detectors);
 
+/// Whether turning the specimen about the beam changes what it counts: it looks from a side.
+bool looks_from_a_side(const Detector& detector);
+
 /// The unit vector of a detector's axis.
 Vec3 axis_direction(const Detector& detector, const Beam& beam);
 
