@@ -10,6 +10,7 @@
 #include "surf/io/sim/materials.h"
 #include "surf/mc/simulate.h"
 #include "surf/workflow/libraries.h"
+#include "surf/workflow/signal_detectors.h"
 #include "temporary_folder.h"
 
 namespace surf::workflow {
@@ -24,7 +25,8 @@ constexpr double energy_ev = 300, pixel_nm = 2, gain = 500, offset = 40;
 /// Lines of silicon, 40 nm wide and 30 nm high, at 300 eV.
 class ProfileJobTest : public testing::Test {
  protected:
-  static PlacedImage lines(double angle_deg, double tilt_deg = 0) {
+  static PlacedImage lines(double angle_deg, double tilt_deg = 0,
+                           const std::string& signal = "SE") {
     const FeatureShape shape{FeatureKind::line, 40, 100, {30, angle_deg, 2, 2}};
     mc::Specimen specimen;
     specimen.materials = {io::find_material("Si", "test")};
@@ -39,13 +41,14 @@ class ProfileJobTest : public testing::Test {
     mc::SimulationOptions options;
     options.budget = mc::ElectronsPerPixel{60};
     options.seed = 5;
+    for (const mc::Detector& d : detectors_of(signal, "test")) options.detectors.push_back(d);
     const mc::SimulationResult done = mc::simulate(mc::Scene(specimen, beam, scan), options, {});
     PlacedImage image;
     image.pitch_x_nm = image.pitch_y_nm = pixel_nm;
     image.values = Grid<double>(scan.width, scan.height);
     for (int y = 0; y < scan.height; ++y)
       for (int x = 0; x < scan.width; ++x)
-        image.values(x, y) = offset + gain * done.yield(0, x, y).mean;
+        image.values(x, y) = offset + gain * done.yield(signal == "SE" ? 0 : 2, x, y).mean;
     return image;
   }
 
@@ -233,6 +236,20 @@ TEST_F(ProfileJobTest, SaysThatABeamWasTiltedToTheOtherSide) {
   const ProfileSummary s = run(job_);
   EXPECT_EQ(s.other_side, std::vector<std::size_t>{1});
   EXPECT_THAT(s.reasons, testing::Contains(HasSubstr("beam.azimuth")));
+}
+
+TEST_F(ProfileJobTest, SaysThatQuadrantsAreExchanged) {
+  job_.electrons = 40, job_.middle_electrons = 600;
+  job_.rounds = 2;
+  job_.folder.clear();
+  job_.views.resize(1);
+  job_.views[0].image = lines(84, 0, "BSE-right");
+  job_.view_settings.signals = {"BSE-right"};
+  EXPECT_TRUE(run(job_).other_side.empty());
+  job_.view_settings.signals = {"BSE-left"};
+  const ProfileSummary s = run(job_);
+  EXPECT_EQ(s.other_side, std::vector<std::size_t>{1});
+  EXPECT_THAT(s.reasons, testing::Contains(HasSubstr("exchanged")));
 }
 
 TEST_F(ProfileJobTest, CanBeInterrupted) {

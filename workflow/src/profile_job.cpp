@@ -23,6 +23,7 @@ namespace {
 
 constexpr double least_height_nm = 1;
 constexpr double largest_discrepancy = 3;  // over the allowed one
+constexpr double most_unexplained = 0.6;   // of the variation of mean profiles
 constexpr double pitch_of_scans = 0.005;   // what scans' heights are calibrated to
 constexpr double far_off = 2.5;            // standard errors of what was said
 constexpr int more_rounds = 2;             // where a number lies at the border of the last box
@@ -181,7 +182,12 @@ std::vector<std::string> reasons_of(const ProfileJob& job, const ProfileSummary&
   }
   for (std::size_t k = 0; k < s.fit.sights.size(); ++k) {
     const double off = s.fit.sights[k].discrepancy_share;
-    if (job.model_error > 0 && off > largest_discrepancy * job.model_error)
+    if (s.fit.sights[k].unexplained_share > most_unexplained)
+      reasons.push_back(fmt::format(
+          "the simulated signal explains next to nothing of image {}: is it of the signal and the "
+          "kind of feature that were told?",
+          k + 1));
+    else if (job.model_error > 0 && off > largest_discrepancy * job.model_error)
       reasons.push_back(fmt::format(
           "no simulated profile is like the measured one{}: {:.0f} % of the contrast stay "
           "unexplained. Check material, energy, signal, height and kind of the feature{}",

@@ -241,7 +241,7 @@ MatchedShape matched_shape(const ProfileJob& job, const std::vector<ProfileSight
     for (const std::size_t k : swapped) std::swap(seen[k].left, seen[k].right);
     double squares = 0;
     for (const SightFit& fit : fit_profile(seen, o).sights)
-      squares += fit.discrepancy_share * fit.discrepancy_share;
+      squares += fit.unexplained_share * fit.unexplained_share;
     return squares;
   };
   const auto all = [&](const std::vector<std::size_t>& swapped) {

@@ -328,7 +328,20 @@ SightFit SightOfWalls::result(const Walls& walls, const Eigen::MatrixXd& covaria
     squares += std::pow(bumps_at(sight_->left->first_u_nm() + k * options_->model_error_nm), 2) /
                near_bumps_;
   out.discrepancy_share = std::sqrt(squares) / (gain_ * contrast_);
+  out.unexplained_share = unexplained(out.profiles);
   return out;
+}
+
+double SightOfWalls::unexplained(const std::vector<MeanProfile>& profiles) const {
+  double n = 0, sum = 0, squares = 0, left = 0;
+  for (const MeanProfile& p : profiles)
+    for (std::size_t i = 0; i < p.u_nm.size(); ++i) {
+      if (!std::isfinite(p.measured[i])) continue;
+      ++n, sum += p.measured[i], squares += p.measured[i] * p.measured[i];
+      left += std::pow(p.measured[i] - (p.fitted[i] - bumps_at(p.u_nm[i])), 2);
+    }
+  const double variation = squares - sum * sum / n;
+  return variation > 0 ? std::sqrt(left / variation) : 0;
 }
 
 std::vector<MeanProfile> SightOfWalls::profiles(const Walls& walls) const {

@@ -118,6 +118,7 @@ class SightOfWalls {
   void derivatives(const WallLayout& layout, int first, const ProfileSample& s, double u,
                    const ProfileLibrary::Value& v, double slope, Derivatives& d) const;
   std::vector<MeanProfile> profiles(const Walls& walls) const;
+  double unexplained(const std::vector<MeanProfile>& profiles) const;
 
   const ProfileSight* sight_;
   const ProfileFitOptions* options_;

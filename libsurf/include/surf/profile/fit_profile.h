@@ -83,6 +83,9 @@ struct SightFit {
   std::vector<MeanProfile> profiles;  ///< of left and right walls
   /// What the simulation is off by, root mean square over the signal's contrast.
   double discrepancy_share = 0;
+  /// What the simulated signal, with gain and offset alone, leaves of the mean profiles' variation:
+  /// root mean square over that variation. 1: it explains nothing.
+  double unexplained_share = 0;
 };
 
 struct ProfileFit {
