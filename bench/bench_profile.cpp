@@ -3,6 +3,7 @@
 // standard errors hold, on images whose truth is known:
 //   bench_profile [CASES [FIRST [FOLDER]]]   with a folder, results and pictures of each case go
 //                                            there
+//   bench_profile --depths [CASES [FIRST [FOLDER]]]   holes whose depth is told a fifth wrong
 // Cases 0 to 5 chose what the method is; the others judge it.
 // Lines, trenches and holes of drawn width, angle and corners, 100 nm high, pixels of 4 nm, 150
 // electrons per pixel; lines and trenches with rough edges. Images are made by the first tier of
@@ -148,6 +149,19 @@ struct Pooled {
   double roughness_count = 0;
 };
 
+/// A hole of any depth.
+Case draw_hole(int number) {
+  RandomStream random(78, static_cast<std::uint64_t>(number), 0);
+  const auto within = [&](double a, double b) { return a + (b - a) * random.uniform(); };
+  Case c;
+  c.shape.kind = FeatureKind::hole;
+  c.shape.width_nm = within(70, 140);
+  c.shape.wall = {within(60, 140), within(83, 89), within(1, 7), within(1, 7)};
+  c.dielectric = number % 2 == 1;
+  c.seed = 2000 + static_cast<std::uint64_t>(number);
+  return c;
+}
+
 Case draw(int number) {
   RandomStream random(77, static_cast<std::uint64_t>(number), 0);
   const auto within = [&](double a, double b) { return a + (b - a) * random.uniform(); };
@@ -179,20 +193,27 @@ void print(const char* what, const Pooled& p) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int cases = argc > 1 ? std::atoi(argv[1]) : 12;
-  const int first = argc > 2 ? std::atoi(argv[2]) : 6;
+  const bool depths = argc > 1 && std::string(argv[1]) == "--depths";
+  if (depths) --argc, ++argv;
+  const int cases = argc > 1 ? std::atoi(argv[1]) : depths ? 8 : 12;
+  const int first = argc > 2 ? std::atoi(argv[2]) : depths ? 2 : 6;
   const std::filesystem::path folder = argc > 3 ? argv[3] : "";
+  double depth_squares = 0, depth_in = 0, depth_count = 0;
   workflow::CachedLibraries libraries(io::cache_folder(""));
   Pooled own, other;
   fmt::print(
       "  case                    width: true, found, threshold     angle: true, found       "
       "sigma: true, found   unexplained  s\n");
   for (int i = first; i < first + cases; ++i) {
-    const Case c = draw(i);
+    const Case c = depths ? draw_hole(i) : draw(i);
     workflow::ProfileJob job;
     job.sem.image = image_of(c, libraries);
     job.kind = c.shape.kind;
     job.height_nm = c.shape.wall.height_nm;
+    if (depths) {
+      job.height_nm *= i / 2 % 2 == 0 ? 0.8 : 1.2;
+      job.height_error_nm = 0.25 * job.height_nm;
+    }
     job.material = io::find_material("Si", "bench");
     job.energy_ev = energy_ev;
     job.spot_nm = spot_nm;
@@ -224,6 +245,15 @@ int main(int argc, char** argv) {
         width.standard_error, threshold, c.shape.wall.angle_deg, angle.value, angle.standard_error,
         c.sigma_nm, s.fit.edge_roughness.sigma_nm, s.fit.edge_roughness.sigma_error_nm,
         100 * s.discrepancy_share, seconds, s.reasons.empty() ? "" : s.reasons.front());
+    if (depths) {
+      const Measured depth = s.fit.left[profile_height];
+      const double off = depth.value / c.shape.wall.height_nm - 1;
+      fmt::print("    depth {:.1f}, told {:.1f}, found {:.1f} +- {:.1f}: off by {:.1f} %\n",
+                 c.shape.wall.height_nm, job.height_nm, depth.value, depth.standard_error,
+                 100 * off);
+      ++depth_count, depth_squares += off * off;
+      depth_in += std::abs(depth.value - c.shape.wall.height_nm) <= 2 * depth.standard_error;
+    }
     std::fflush(stdout);
     Pooled& p = c.dielectric ? other : own;
     const double w = width.value - true_width, a = angle.value - c.shape.wall.angle_deg;
@@ -236,4 +266,7 @@ int main(int argc, char** argv) {
   }
   print("own physics", own);
   print("other tier", other);
+  if (depth_count > 0)
+    fmt::print("depths: off by {:.1f} %, within two standard errors {:.0f} %\n",
+               100 * std::sqrt(depth_squares / depth_count), 100 * depth_in / depth_count);
 }

@@ -9,6 +9,7 @@
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"
 #include "surf/io/model/model_file.h"
+#include "surf/workflow/stored_model.h"
 #include "temporary_folder.h"
 
 namespace surf::workflow {
@@ -127,6 +128,37 @@ TEST_F(TrainJobTest, MakesImagesOfOtherSettingsAnew) {
   EXPECT_EQ(train(job).images_found, 0);
   io::write_text(path("si.training") / "blocks.exr", "damaged");
   EXPECT_EQ(train(job).images_made, 1);
+}
+
+TEST_F(TrainJobTest, LearnsFurtherDetectorsAndSaysWhich) {
+  TrainJob job = small_training(path("si.json"));
+  job.learn.kind = "facet-network";
+  job.learn.iterations = 4;
+  job.detectors = mc::parse_detectors("quadrants", "test");
+  const TrainedModel model = train(job).model;
+  const auto& network = std::get<FacetNetworkParameters>(model.parameters);
+  EXPECT_TRUE(network.sided);
+  ASSERT_EQ(network.channels.size(), 6u);
+  EXPECT_EQ(network.channels[2].name, "BSE-right");
+  EXPECT_EQ(model.record.residuals.at(5).channel, "BSE-bottom");
+  const std::vector<mc::Detector> taught = taught_by(io::read_model(path("si.json")));
+  ASSERT_EQ(taught.size(), 4u);
+  EXPECT_EQ(mc::format_detector(taught[1]), mc::format_detector(job.detectors[1]));
+
+  job.detectors = mc::parse_detectors("in-lens", "test");
+  EXPECT_FALSE(std::get<FacetNetworkParameters>(train(job).model.parameters).sided);
+  job.learn.iterations.reset();
+  const auto refused = [&](const char* kind, const char* what) {
+    job.learn.kind = kind;
+    EXPECT_THAT([&] { run(job); }, testing::ThrowsMessage<UsageError>(HasSubstr(what))) << kind;
+  };
+  refused("stopping-points", "gives SE and BSE only");
+  job.detectors = mc::parse_detectors("side", "test");
+  refused("filter-bank", "SE-side looks from a side");
+  job.learn.kind = "secant";
+  job.detectors = mc::parse_detectors("annular", "test");
+  job.detectors.push_back(job.detectors.front());
+  EXPECT_THROW(run(job), UsageError);
 }
 
 TEST_F(TrainJobTest, StopsAndGoesOnToTheSameBytes) {

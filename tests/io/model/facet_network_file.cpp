@@ -15,8 +15,9 @@ namespace {
 
 using testing::HasSubstr;
 
-TrainedModel network() {
+TrainedModel network(bool sided = false) {
   FacetNetworkParameters p;
+  p.sided = sided;
   p.scales = {{5, 0.6}, {9, 1.0 / 3}};
   p.sky_edges_nm = {0, 4.1, 10 * (0.1 + 0.2)};
   p.sky_edges_nm[2] += 10;
@@ -41,7 +42,7 @@ class FacetNetworkFile : public testing::Test {
  protected:
   /// The message that reading gives once a text of the file is replaced.
   std::string complaint(const std::string& what, const std::string& by) {
-    write_model(file_, network());
+    write_model(file_, network(what.find("sided") != std::string::npos));
     std::string text = read_file(file_);
     const auto parameters = text.find("\"parameters\"");
     const auto at = text.find(what, parameters);
@@ -90,6 +91,15 @@ TEST_F(FacetNetworkFile, ComesBackToTheLastBit) {
   const std::string bytes = read_file(file_);
   write_model(file_, back);
   EXPECT_EQ(read_file(file_), bytes);
+}
+
+TEST_F(FacetNetworkFile, SaysWhetherItTellsSides) {
+  for (const bool sided : {false, true}) {
+    write_model(file_, network(sided));
+    EXPECT_EQ(std::get<FacetNetworkParameters>(read_model(file_).parameters).sided, sided);
+    EXPECT_EQ(read_file(file_).find("\"sided\"") != std::string::npos, sided);
+  }
+  EXPECT_THAT(complaint("\"sided\": true", "\"sided\": 1"), HasSubstr("sided"));
 }
 
 TEST_F(FacetNetworkFile, NamesWhatIsMissing) {

@@ -65,6 +65,15 @@ TEST(Detector, IsReadBackAsItIsWritten) {
     }
 }
 
+TEST(Detector, SaysWhetherItLooksFromASide) {
+  for (const char* side : {"side", "x:sector=0..180", "x:axis=30deg/90deg"})
+    EXPECT_TRUE(looks_from_a_side(one(side))) << side;
+  for (const Detector& quadrant : parse_detectors("quadrants", "--detector"))
+    EXPECT_TRUE(looks_from_a_side(quadrant)) << quadrant.name;
+  for (const char* round : {"SE", "BSE", "SE1", "annular", "in-lens", "x:axis=beam", "x:side=down"})
+    EXPECT_FALSE(looks_from_a_side(one(round))) << round;
+}
+
 TEST(Detector, SaysWhatIsWrong) {
   EXPECT_THAT(error_of("ringed"), HasSubstr("there is no detector 'ringed'"));
   EXPECT_THAT(error_of("ringed"), HasSubstr("quadrants"));
