@@ -110,6 +110,34 @@ TEST_F(ReconstructionOfQuadrants, ExchangedOnesAreRefused) {
   EXPECT_NE(run(job_).verdict, ReconstructionVerdict::not_registered);
 }
 
+TEST_F(ReconstructionOfQuadrants, FindHeightsWithoutAScan) {
+  job_.afm.reset();
+  job_.pose.transform.reset();
+  job_.model.signal = "SE";
+  job_.sem->image.origin_x_nm = 0;
+  job_.calibration = GivenCalibration{{300}, 20};
+  for (const char* signal : {"BSE-right", "BSE-top", "BSE-left", "BSE-bottom"}) {
+    job_.views.push_back(view_of(signal, job_.views.size() + 2));
+    job_.view_settings.signals.emplace_back(signal);
+    job_.known_views.gains.push_back({300, 20});
+  }
+  job_.model_error = 0.01;
+  job_.options.scales_px = {5, 1.4};
+  const ReconstructSummary s = run(job_);
+  double n = 0, sum = 0, squares = 0;
+  for (int y = 9; y < 49; ++y)
+    for (int x = 12; x < 62; ++x)
+      ++n, sum += truth_.z_nm(x, y), squares += truth_.z_nm(x, y) * truth_.z_nm(x, y);
+  EXPECT_LT(error_nm(s), 0.3 * std::sqrt(squares / n - sum * sum / n / n));
+  for (const ViewResult& view : s.result.views) {
+    EXPECT_LT(std::abs(view.pose.tilt_deg), 1e-4);  // of one scan: held
+    EXPECT_EQ(view.gains.at(0), 300);               // nothing tells it from the heights
+  }
+  EXPECT_THAT(s.warnings, testing::Not(Contains(HasSubstr("begin flat"))));
+  job_.known_views.gains.clear();
+  EXPECT_THAT([&] { run(job_); }, ThrowsMessage<UsageError>(HasSubstr("view_gains")));
+}
+
 TEST_F(ReconstructionOfQuadrants, TheFirstImageMayBeOne) {
   job_.sem->image = image_of("BSE-top", 2);
   job_.model.signal = "BSE-top";

@@ -104,7 +104,7 @@ Identity identity_of(const ReconstructionOptions& o, const AfmData* afm, const S
     const SemView& view = views[k];
     add_image(of, view.sem, of_views[k].model, id);
     id[of + "'s pose"] = exact_list({view.pose.tilt_deg, view.pose.azimuth_deg, view.tilt_error_deg,
-                                     view.scale_error}) +
+                                     view.scale_error, view.same_scan ? 1.0 : 0.0}) +
                          map_text(view.pose.to_plane);
   }
   if (corrections)
@@ -352,6 +352,8 @@ ReconstructionOptions options_of(const ReconstructJob& job, const ReconstructSum
   o.rough_ground = s.afm && s.afm->rough_ground;
   // It would follow the direction in which the channels, or a film, cannot be told apart.
   if (s.gains_tied || !job.film.empty()) o.refine_calibration = false;
+  // A larger gain and lower hills explain an image as well.
+  if (!job.afm) o.refine_calibration = false;
   o.refine_tip = job.afm && job.sem && o.method == ReconstructionMethod::gauss_newton &&
                  job.refine_tip.value_or(s.afm && !s.afm->tip_given);
   return o;

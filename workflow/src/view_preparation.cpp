@@ -124,10 +124,6 @@ std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary
   const std::size_t views = job.views.size();
   if (views == 0) return out;
   begin(told, "views");
-  if (!job.afm)
-    told.warn(
-        "heights from SEM images alone begin flat, and hardly leave that: give a scan, or measure "
-        "lines, trenches and edges by 'semsurf profile', which takes several images, too");
   const KnownViews& settings = job.known_views;
   const std::vector<ViewAngles> angles = angles_of(job.view_settings, views, 0);
   const auto models =
@@ -157,10 +153,13 @@ std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary
     const std::vector<double> gains =
         same_signal ? sem.gains : std::vector<double>(model.channels().size(), 1.0);
 
-    // Where it looks: by the surface, or, where none is known yet, by the first image.
-    const PlacedImage there =
-        surface ? predicted(*surface, image, view.pose, model, gains, threads) : sem.image;
-    std::vector<ImageShift> shifts = find_shifts(there, image);
+    // Where it looks: by the surface, or, where none is known yet, by the first image. Images of
+    // different signals look different: without a surface they are taken as of one scan.
+    std::vector<ImageShift> shifts;
+    if (surface)
+      shifts = find_shifts(predicted(*surface, image, view.pose, model, gains, threads), image);
+    else if (same_signal) shifts = find_shifts(sem.image, image);
+    const bool compared = surface || same_signal;
     if (shifts.empty()) shifts = {{0, 0, 0}};
     ImageShift shift = nearest_of_best(shifts, {});
     if (!settings.places_nm.empty())
@@ -173,7 +172,7 @@ std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary
           find_shifts(predicted(*surface, image, mirrored, model, gains, threads), image);
       if (!others.empty()) found.other_side = others.front().correlation;
     }
-    if (settings.places_nm.empty()) found.doubt = doubt_of(found);
+    if (settings.places_nm.empty() && compared) found.doubt = doubt_of(found);
     if (surface && found.model.sided) {
       Facing facing{shift.correlation};
       for (int quarters = 1; quarters < 4; ++quarters) {
@@ -186,6 +185,13 @@ std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary
         found.doubt = std::move(doubt);
     }
     view.pose.to_plane = {1, 0, shift.x_nm, 0, 1, shift.y_nm};
+    view.same_scan = !same_signal && found.tilt_deg == 0 && shift.x_nm == 0 && shift.y_nm == 0 &&
+                     image.placement() == sem.image.placement() &&
+                     image.values.width() == sem.image.values.width() &&
+                     image.values.height() == sem.image.values.height();
+    if (view.same_scan)
+      told.note(
+          fmt::format("view {}: taken as of the first image's scan, by another detector", k + 2));
 
     std::optional<GivenCalibration> given;
     if (!settings.gains.empty()) {
@@ -239,6 +245,13 @@ std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary
     s.views.push_back(std::move(found));
     out.push_back(std::move(view));
   }
+  if (!job.afm &&
+      std::ranges::none_of(s.views, [](const PreparedView& v) { return v.model.sided; }))
+    told.warn(
+        "heights from SEM images alone begin flat, and hardly leave that: give a scan, or images "
+        "of quadrants, which tell slopes (`reconstruction.view_signal`), or measure lines, "
+        "trenches "
+        "and edges by 'semsurf profile'");
   return out;
 }
 

@@ -36,8 +36,9 @@ ViewTerm::ViewTerm(const SemView& view, const SurfaceFrame& surface, const Grid<
   const double half = 0.5 * std::max(frame_.width, frame_.height),
                of_scale = std::pow(view.scale_error * half, -2),
                of_tilt = std::pow(view.tilt_error_deg, -2);
-  constexpr double of_place = 1e-8;  // as good as none
-  precision_ = {of_place, of_scale, of_scale, of_place, of_scale, of_scale, of_tilt, of_tilt};
+  constexpr double of_place = 1e-8, held = 1e12;  // as good as none, and as good as exact
+  if (view.same_scan) precision_.fill(held);
+  else precision_ = {of_place, of_scale, of_scale, of_place, of_scale, of_scale, of_tilt, of_tilt};
 }
 
 ViewTerm::State ViewTerm::evaluate(const Grid<double>& z, const ViewUnknowns& at) const {

@@ -44,6 +44,8 @@ struct SemView {
   double tilt_error_deg = 0.5;
   /// Standard error of its pixel sizes, turn and shear against the first image's.
   double scale_error = 0.003;
+  /// It was taken with the first image, by another detector: its pose is exact, and held.
+  bool same_scan = false;
 };
 
 /// How a view agrees with the surface that was found.
