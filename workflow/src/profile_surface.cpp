@@ -96,13 +96,14 @@ At nearest(const std::vector<FittedEdge>& edges, double x, std::size_t row) {
   return best;
 }
 
-/// The fitted mean profile of such walls at a distance from their middle; NaN beyond its ends.
+/// The fitted mean profile of such walls at a distance from their middle, beyond it as at its ends.
 double fitted_at(const std::vector<MeanProfile>& profiles, bool material_right, double u) {
   for (const MeanProfile& p : profiles) {
-    if (p.material_right != material_right || u < p.u_nm.front() || u > p.u_nm.back()) continue;
+    if (p.material_right != material_right) continue;
     const auto after = std::ranges::lower_bound(p.u_nm, u);
+    if (after == p.u_nm.begin()) return p.fitted.front();
+    if (after == p.u_nm.end()) return p.fitted.back();
     const auto i = static_cast<std::size_t>(after - p.u_nm.begin());
-    if (i == 0) return p.fitted.front();
     const double share = (u - p.u_nm[i - 1]) / (p.u_nm[i] - p.u_nm[i - 1]);
     return p.fitted[i - 1] + share * (p.fitted[i] - p.fitted[i - 1]);
   }
