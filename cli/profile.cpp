@@ -171,7 +171,7 @@ void add_profile(CLI::App& app, Action& action) {
       "profile", "Widths, wall angles and edge roughness of lines, trenches and holes");
   with_role(sub->add_option("IMAGE", o->image, "The SEM image")->type_name("FILE"), FileRole::read);
   o->bound.headings = {{"profile", "Shape"},
-                       {"sem", "SEM image"},
+                       {"scan", "SEM image"},
                        {"specimen", "SEM image"},
                        {"reconstruction", "Further images"},
                        {"reconstruction.afm", "Shape"},

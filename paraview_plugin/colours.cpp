@@ -17,6 +17,7 @@ constexpr const char* colours = R"json({"standard_presets": {
   "sem": "Grayscale",
   "simulated": "Grayscale",
   "calibrated": "Grayscale",
+  "fitted": "Grayscale",
   "blend": "Grayscale",
   "certain": "Grayscale",
   "deviation_nm": "Inferno (matplotlib)",

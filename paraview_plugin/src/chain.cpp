@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "convert/image.h"
 #include "property_values.h"
@@ -25,16 +26,22 @@ void complete(workflow::ModelRequest& request, const PropertyValues& values) {
   const std::filesystem::path cache = io::cache_folder();
   if (!cache.empty()) request.folder = cache / "models";
   if (!request.file.empty()) return;
-  io::MaterialChoice material;
-  values.apply(material);
+  mc::Material material = chosen_material(values);
   if (material.name.empty())
     throw UsageError("`reconstruction.model`", "no model is named, nor a material",
                      "Give one of the two");
   if (cache.empty())
     throw UsageError("`reconstruction.model`",
                      "none is named, and there is no cache to keep one in", "Name one");
+  request.material = std::move(material);
+}
+
+mc::Material chosen_material(const PropertyValues& values) {
+  io::MaterialChoice choice;
+  values.apply(choice);
+  if (choice.name.empty()) return {};
   std::vector<std::string> notes;
-  request.material = io::find_material(material, notes);
+  return io::find_material(choice, notes);
 }
 
 void add_chain_record(vtkDataObject* data, const std::string& step, const Record& parameters,

@@ -6,6 +6,7 @@
 
 #include "labels.h"
 #include "surf/core/progress.h"
+#include "surf/mc/physics/material.h"
 #include "surf/registration/landmarks.h"
 #include "surf/workflow/register_job.h"
 
@@ -19,6 +20,9 @@ class PropertyValues;
 /// What a job's description cannot take from properties: the folder that models are kept in and,
 /// where no model is named, the material. Throws UsageError.
 void complete(workflow::ModelRequest& request, const PropertyValues& values);
+
+/// The material that properties name; without a name where they name none. Throws UsageError.
+mc::Material chosen_material(const PropertyValues& values);
 
 /// What properties of both filters are called that are not called as their fields are.
 extern const Labels chain_labels;

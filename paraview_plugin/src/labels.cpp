@@ -22,6 +22,7 @@ const std::map<std::string_view, std::string> other_names{{"specimen.material", 
                                                           {"tip.kind", "Shape"},
                                                           {"tip.size", "Tip Size"},
                                                           {"reconstruction.model", "Model File"},
+                                                          {"reconstruction.afm", "AFM"},
                                                           {"clean.spikes", "Spike Width"},
                                                           {"clean.median", "Median Width"},
                                                           {"clean.closing", "Closing Width"}};

@@ -40,6 +40,7 @@
 #include "surf/workflow/morphology_job.h"
 #include "surf/workflow/noise_job.h"
 #include "surf/workflow/predict_job.h"
+#include "surf/workflow/profile_job.h"
 #include "surf/workflow/reconstruct_job.h"
 #include "surf/workflow/register_job.h"
 #include "surf/workflow/simulate_job.h"
@@ -90,6 +91,7 @@ const std::map<std::string, std::function<std::vector<Described>()>>& structs() 
       {"estimate_options", described<workflow::EstimateOptions>},
       {"register", described<workflow::RegisterJob>},
       {"reconstruct", described_reconstruction},
+      {"profile", described<workflow::ProfileJob>},
       {"calibrate", described<workflow::CalibrateParameters>},
       {"repair", described<RepairOptions>},
       {"simplify", described<SimplifyOptions>},

@@ -48,6 +48,7 @@ def cases():
         yield "Noise", lambda: simple.NoiseModel(Input=scan, Flat=flat), True
     yield "Register", lambda: simple.RegisterAFMandSEM(Input=scan, SEM=sem, Tip=probe, Material="Si"), False
     yield "Reconstruct", lambda: simple.Reconstruct(Input=scan, SEM=sem, Tip=probe, Material="Si", UseTransform=1), False
+    yield "Profile", lambda: simple.MeasureProfile(Input=sem, Height=20), False
     yield "Calibrate", lambda: simple.CalibrateSEM(Input=sem, Simulated=sem, Offset="-1", Black="-1"), True
     yield "Predict", lambda: simple.PredictSEM(Input=scan, ModelFile=MODEL), True
     yield "Estimate", lambda: simple.EstimateSEM(Input=sem), False

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a filter's output says of how it was made: each property is changed from its default and found again."""
-from support import SOURCE, each, expect, fetch, messages, run, simple, text, texts
+from support import FOLDER, SOURCE, each, expect, fetch, messages, numpy, run, simple, text, texts
 
 MODEL = str(SOURCE / "samples" / "si-1keV-3nm.json")
 
@@ -88,6 +88,18 @@ STEPS = {
                "StemHalfAngle": (4, "tip.shape=ball:5nm,2nm,4deg", {"Shape": "Ball", "StemRadius": 2}),
                "TipSize": (9, "tip.size=9"), "Pitch": (2, "scan.height_pitch_nm=2")},
 }
+# Of a measurement, all changed together: it takes seconds.
+PROFILE = {"Kind": ("Edge", "profile.kind=edge"), "AlongX": (1, "profile.along_x=on"), "Height": (31, "profile.height_nm=31"),
+           "HeightError": (1, "profile.height_error_nm=1"), "Pitch": (0, "profile.pitch_nm=0"), "Angle": (85, "profile.angle_deg=85"),
+           "AngleRange": (3, "profile.angle_range_deg=3"), "TopRadius": (0, "profile.top_radius_nm=0"),
+           "FootRadius": (0, "profile.foot_radius_nm=0"), "WallsApart": (1, "profile.walls_apart=on"),
+           "Threshold": (0.4, "profile.threshold=0.4"), "Energy": (300, "beam.energy_ev=300"), "Spot": (1, "beam.spot_nm=1"),
+           "Physics": ("barrier=classical", "simulation.physics=inelastic=monsel,elastic=mott,atoms=free,loss=joy-luo,secondaries=on,barrier=classical"),
+           "Signal": ("BSE", "profile.signal=BSE"), "ViewSignal": ("BSE;SE", "reconstruction.view_signal=BSE;SE"), "Tilt": ("1", "beam.tilt_deg=1"),
+           "Azimuth": ("90", "beam.azimuth_deg=90"), "ViewEnergy": ("300", "reconstruction.view_energy_ev=300"),
+           "TiltError": (0.2, "reconstruction.tilt_error_deg=0.2"), "Electrons": (10, "profile.electrons=10"),
+           "MiddleElectrons": (20, "profile.middle_electrons=20"), "Rounds": (1, "profile.rounds=1"),
+           "ModelError": (0.1, "profile.model_error=0.1"), "Seed": (5, "profile.seed=5")}
 # Inputs, and what says what is made or shown, not how.
 APART = {"Input", "Scalars", "SEM", "SEMScalars", "Tip", "AFMLandmarks", "SEMLandmarks", "Simulated", "SimulatedScalars",
          "ModelFile", "Material", "MaterialFile", "UseTransform", "Repair", "Limit"}
@@ -165,5 +177,26 @@ def steps_say_every_property():
     each([(name,) for name in STEPS], check)
 
 
+def measurements_say_every_property():
+    """Two images of an edge along x, bright at its rim."""
+    y = (numpy.arange(24) - 12)[:, None] * 3.0
+    numpy.savetxt(FOLDER / "rim.txt", (1 + 0.5 * (y > 0) + 1.5 * numpy.exp(-(((y - 3) / 5) ** 2)) + numpy.zeros(24))[::-1])
+
+    def image():
+        return simple.AFMScanReader(FileName=str(FOLDER / "rim.txt"), PixelSize=[3, 3])
+    source = simple.MeasureProfile(Input=[image(), image()])
+    names, known = set(source.ListProperties()), set(PROFILE) | APART | {"AFM", "AFMScalars"}
+    expect(names <= known, f"nobody looks for {names - known}")
+    for what, (value, _) in PROFILE.items():
+        expect(getattr(source, what) != value, f"{what} is {value} by default")
+        setattr(source, what, value)
+    got = said(source)
+
+    def check(what, wanted):
+        key, _, text_of_it = wanted.partition("=")
+        expect(got.get(key) == text_of_it, f"{key} is {got.get(key)}, not {text_of_it}")
+    each([(what, wanted) for what, (_, wanted) in PROFILE.items()], check)
+
+
 if __name__ == "__main__":
-    run(simulations_say_every_property, steps_say_every_property)
+    run(simulations_say_every_property, steps_say_every_property, measurements_say_every_property)

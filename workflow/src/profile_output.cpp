@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "surf/core/units.h"
 #include "surf/io/files.h"
@@ -128,13 +127,13 @@ std::string profiles_csv(const ProfileJob& job, const ProfileSummary& s) {
   return text;
 }
 
-std::string spectrum_csv(const ProfileSummary& s, double distance_nm) {
+std::string spectrum_csv(const ProfileSummary& s) {
   std::string text = "frequency_per_nm,edge_density_nm3,edge_fitted_nm3,width_density_nm3\n";
   const EdgeSpectrum& e = s.fit.edge_spectrum;
   for (std::size_t i = 0; i < e.frequency_per_nm.size(); ++i) {
-    text +=
-        fmt::format("{:.6g},{:.6g},{:.6g},", e.frequency_per_nm[i], e.density_nm3[i],
-                    roughness_density(s.fit.edge_roughness, e.frequency_per_nm[i], distance_nm));
+    text += fmt::format(
+        "{:.6g},{:.6g},{:.6g},", e.frequency_per_nm[i], e.density_nm3[i],
+        roughness_density(s.fit.edge_roughness, e.frequency_per_nm[i], s.row_distance_nm));
     if (i < s.fit.width_spectrum.density_nm3.size())
       text += fmt::format("{:.6g}", s.fit.width_spectrum.density_nm3[i]);
     text += "\n";
@@ -153,21 +152,11 @@ io::PlotPanel image_panel(const ProfileSummary& s, const PlacedImage& image) {
   picture.origin_x = image.x_nm(0), picture.origin_y = image.y_nm(0);
   picture.label = "signal";
   panel.image = std::move(picture);
-  for (const FittedEdge& e : s.fit.edges()) {
+  for (std::size_t e = 0; e < s.edge_lines_nm.size(); ++e) {
     io::PlotSeries line;
-    for (std::size_t r = 0; r < e.rows_nm.size(); ++r) {
-      const double at = e.rows_nm[r];
-      if (s.hole) {
-        const double a = 2 * std::numbers::pi * (static_cast<double>(r) + 0.5) /
-                         static_cast<double>(e.rows_nm.size());
-        line.x.push_back(s.hole->x_nm + at * std::cos(a));
-        line.y.push_back(s.hole->y_nm + at * std::sin(a));
-      } else {
-        line.x.push_back(at);
-        line.y.push_back(image.y_nm(static_cast<int>(r)));
-      }
-    }
-    line.color = e.edge.material_right ? 1 : 2;
+    for (const Point2& place : s.edge_lines_nm[e])
+      line.x.push_back(place.x), line.y.push_back(place.y);
+    line.color = s.fit.edges()[e].edge.material_right ? 1 : 2;
     panel.series.push_back(std::move(line));
   }
   return panel;
@@ -212,7 +201,7 @@ io::PlotPanel shape_panel(const ProfileJob& job, const ProfileSummary& s) {
   return panel;
 }
 
-io::PlotPanel spectrum_panel(const ProfileSummary& s, double distance_nm) {
+io::PlotPanel spectrum_panel(const ProfileSummary& s) {
   io::PlotPanel panel;
   panel.title = "spectrum of the edges";
   panel.x = {"frequency (1/nm)", true, {}};
@@ -228,8 +217,8 @@ io::PlotPanel spectrum_panel(const ProfileSummary& s, double distance_nm) {
       if (value > 0) to.x.push_back(f), to.y.push_back(value);
     };
     push(seen, e.density_nm3[i]);
-    push(all, roughness_density(s.fit.edge_roughness, f, distance_nm));
-    if (s.fit.edge_roughness.found) push(rough, roughness_density(quiet, f, distance_nm));
+    push(all, roughness_density(s.fit.edge_roughness, f, s.row_distance_nm));
+    if (s.fit.edge_roughness.found) push(rough, roughness_density(quiet, f, s.row_distance_nm));
   }
   panel.series = {seen, all};
   if (!rough.x.empty()) panel.series.push_back(rough);
@@ -259,24 +248,20 @@ Image surface_image(const ProfileSummary& s, const std::map<std::string, std::st
 
 }  // namespace
 
-std::vector<std::filesystem::path> write_profile(const ProfileJob& job, const ProfileSummary& s,
-                                                 const PlacedImage& image) {
+std::vector<std::filesystem::path> write_profile(const ProfileJob& job, const ProfileSummary& s) {
   std::filesystem::create_directories(job.folder);
   std::vector<std::filesystem::path> written;
   const auto path = [&](const char* file) {
     written.push_back(job.folder / file);
     return written.back();
   };
-  const double distance_nm = s.hole ? 2 * std::numbers::pi * s.hole->radius_nm /
-                                          static_cast<double>(s.fit.edges().front().rows_nm.size())
-                                    : image.pitch_y_nm;
   // Of an earlier run; what says whether a result is to be trusted comes last.
   for (const char* file : {"profile.json", "spectrum.csv", "panel.png"})
     std::filesystem::remove(job.folder / file);
   io::write_text(path("edges.csv"), edges_csv(s));
   io::write_text(path("profiles.csv"), profiles_csv(job, s));
   const bool spectrum = !s.fit.edge_spectrum.density_nm3.empty();
-  if (spectrum) io::write_text(path("spectrum.csv"), spectrum_csv(s, distance_nm));
+  if (spectrum) io::write_text(path("spectrum.csv"), spectrum_csv(s));
   const std::map<std::string, std::string> made =
       step_record("profile", record_of(job), inputs_of(job));
   io::write_height_field(path("surface.gsf"), s.surface, made);
@@ -287,10 +272,10 @@ std::vector<std::filesystem::path> write_profile(const ProfileJob& job, const Pr
   };
   if (!job.picture) return finish();
   io::Plot plot;
-  plot.panels = {image_panel(s, image), profile_panel(job, s, 0), shape_panel(job, s)};
+  plot.panels = {image_panel(s, job.sem.image), profile_panel(job, s, 0), shape_panel(job, s)};
   for (std::size_t k = 1; k < s.fit.sights.size(); ++k)
     plot.panels.push_back(profile_panel(job, s, k));
-  if (spectrum) plot.panels.push_back(spectrum_panel(s, distance_nm));
+  if (spectrum) plot.panels.push_back(spectrum_panel(s));
   plot.columns = 2;
   plot.width_px = 1800;
   plot.metadata = made;

@@ -8,9 +8,8 @@
 
 namespace surf::workflow {
 
-/// Writes what a profile job found into its folder; returns the files. `image`: lines along y.
+/// Writes what a profile job found into its folder; returns the files.
 std::vector<std::filesystem::path> write_profile(const ProfileJob& job,
-                                                 const ProfileSummary& summary,
-                                                 const PlacedImage& image);
+                                                 const ProfileSummary& summary);
 
 }  // namespace surf::workflow

@@ -29,14 +29,8 @@ void describe_beam(ParameterVisitor& visit, ProfileJob& job) {
 
 void describe(ParameterVisitor& visit, ProfileJob& job) {
   describe(visit, job.sem);
-  visit.form(
-      {.name = "profile.kind",
-       .help = "What is measured: line, trench, edge (ground at its left) or hole",
-       .form = "KIND"},
-      [&] { return std::string(name(job.kind)); },
-      [&](std::string_view text, const std::string& subject) {
-        job.kind = parse_feature_kind(std::string(text), subject);
-      });
+  visit(job.kind, {"line", "trench", "edge", "hole"},
+        {.name = "profile.kind", .help = "What is measured; an edge has ground at its left"});
   visit(job.along_x, {.name = "profile.along_x", .help = "Lines run along x, not along y"});
   std::optional<double> height = job.height_nm > 0 ? std::optional(job.height_nm) : std::nullopt;
   visit(height,

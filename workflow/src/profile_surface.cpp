@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 #include "surf/afm/step_height.h"
 #include "surf/core/error.h"
@@ -94,14 +96,54 @@ At nearest(const std::vector<FittedEdge>& edges, double x, std::size_t row) {
   return best;
 }
 
+/// The fitted mean profile of such walls at a distance from their middle, beyond it as at its ends.
+double fitted_at(const std::vector<MeanProfile>& profiles, bool material_right, double u) {
+  for (const MeanProfile& p : profiles) {
+    if (p.material_right != material_right) continue;
+    const auto after = std::ranges::lower_bound(p.u_nm, u);
+    if (after == p.u_nm.begin()) return p.fitted.front();
+    if (after == p.u_nm.end()) return p.fitted.back();
+    const auto i = static_cast<std::size_t>(after - p.u_nm.begin());
+    const double share = (u - p.u_nm[i - 1]) / (p.u_nm[i] - p.u_nm[i - 1]);
+    return p.fitted[i - 1] + share * (p.fitted[i] - p.fitted[i - 1]);
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+void add_lines(const PlacedImage& image, ProfileSummary& s) {
+  s.edge_lines_nm.clear();
+  for (const FittedEdge& e : s.fit.edges()) {
+    const auto rows = static_cast<double>(e.rows_nm.size());
+    std::vector<Point2>& line = s.edge_lines_nm.emplace_back();
+    for (std::size_t r = 0; r < e.rows_nm.size(); ++r) {
+      if (!s.hole) {
+        line.push_back({e.rows_nm[r], image.y_nm(static_cast<double>(r))});
+        continue;
+      }
+      const double a = 2 * std::numbers::pi * (static_cast<double>(r) + 0.5) / rows;
+      line.push_back(
+          {s.hole->x_nm + e.rows_nm[r] * std::cos(a), s.hole->y_nm + e.rows_nm[r] * std::sin(a)});
+    }
+    s.row_distance_nm = s.hole ? 2 * std::numbers::pi * s.hole->radius_nm / rows : image.pitch_y_nm;
+  }
+}
+
+Grid<double> turned(const Grid<double>& grid) {
+  Grid<double> out(grid.height(), grid.width());
+  for (int y = 0; y < grid.height(); ++y)
+    for (int x = 0; x < grid.width(); ++x) out(y, x) = grid(x, y);
+  return out;
+}
+
 }  // namespace
 
 void add_surface(const PlacedImage& image, ProfileSummary& s) {
+  add_lines(image, s);
   const std::vector<FittedEdge>& edges = s.fit.edges();
   const std::array<WallDoubt, 2> walls{WallDoubt(s.fit.left), WallDoubt(s.fit.right)};
   const int w = image.values.width(), h = image.values.height();
   s.surface = {image.placement(), Grid<double>(w, h)};
-  s.deviation_nm = Grid<double>(w, h);
+  s.deviation_nm = s.fitted = Grid<double>(w, h);
   const auto rows = static_cast<double>(edges.front().smooth_nm.size());
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
@@ -114,10 +156,20 @@ void add_surface(const PlacedImage& image, ProfileSummary& s) {
         row = static_cast<std::size_t>(std::clamp((turn - std::floor(turn)) * rows, 0.0, rows - 1));
       }
       const At at = nearest(edges, across, row);
-      const WallDoubt& wall = walls[edges[at.edge].edge.material_right ? 0 : 1];
+      const bool material_right = edges[at.edge].edge.material_right;
+      const WallDoubt& wall = walls[material_right ? 0 : 1];
       s.surface.z_nm(x, y) = wall.middle.at(at.u);
       s.deviation_nm(x, y) = wall.deviation(at.u, at.place_error);
+      s.fitted(x, y) = fitted_at(s.fit.sights.front().profiles, material_right, at.u);
     }
+}
+
+void turn_surface(ProfileSummary& s) {
+  std::swap(s.surface.origin_x_nm, s.surface.origin_y_nm);
+  std::swap(s.surface.pitch_x_nm, s.surface.pitch_y_nm);
+  for (Grid<double>* grid : {&s.surface.z_nm, &s.deviation_nm, &s.fitted}) *grid = turned(*grid);
+  for (std::vector<Point2>& line : s.edge_lines_nm)
+    for (Point2& place : line) std::swap(place.x, place.y);
 }
 
 Measured wall_height(const HeightField& scan) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "surf/core/affine.h"
 #include "surf/core/parameters.h"
 #include "surf/mc/physics/material.h"
 #include "surf/mc/physics/physics.h"
@@ -64,6 +65,9 @@ struct ProfileSummary {
   ProfileFit fit;
   HeightField surface;        ///< of that shape, with the edges of each row, on the image's pixels
   Grid<double> deviation_nm;  ///< standard deviation of its heights
+  Grid<double> fitted;        ///< the image as the fitted mean profiles have it
+  std::vector<std::vector<Point2>> edge_lines_nm;  ///< of each edge its places, in the image
+  double row_distance_nm = 1;                      ///< between places of an edge, along it
   double discrepancy_share = 0;  ///< what the simulation is off by, over the contrast; the most
   std::int64_t simulated = 0;    ///< profiles
   /// Images (the first is 0) that look as if they were tilted to the other side, or as if a
