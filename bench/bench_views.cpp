@@ -6,6 +6,7 @@
 //                                                 to fit alone, as "two views and a scan"
 //   bench_views --heights MODEL.json [CASES [FIRST [FOLDER]]]   the reconstruction of heights
 //   beside
+//   bench_views --chart CHART.svg [...]   error against time of all that is measured
 // Lines 100 nm high, of drawn width, wall angle and pitch, pixels of 4 nm, 150 electrons per pixel;
 // tilts of 0 and 3 degrees to both sides, said to 0.05 degrees; BSE by quadrants; a scan of 12 nm
 // pitch by a tip of 15 nm. Without a scan the height is said to be 100 +- 20 nm, as it is drawn.
@@ -29,6 +30,7 @@
 #include "surf/core/random.h"
 #include "surf/io/cache.h"
 #include "surf/io/height_field_file.h"
+#include "surf/io/plot.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/simulate.h"
 #include "surf/profile/feature_shape.h"
@@ -171,16 +173,26 @@ Off off(const HeightField& found, const Grid<double>& deviation_nm, const Height
 struct Pooled {
   double n = 0, squares = 0, width2 = 0, height2 = 0, angle2 = 0, width_in = 0, height_in = 0,
          angle_in = 0, within = 0, seconds = 0;
+  std::vector<double> each_seconds, each_rms_nm;
+
+  void add(double rms_nm, double took) {
+    ++n, squares += rms_nm * rms_nm, seconds += took;
+    each_seconds.push_back(took), each_rms_nm.push_back(rms_nm);
+  }
 };
+
+using Clock = std::chrono::steady_clock;
+double since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 /// The widths of rows are drawn once: the feature is straight.
 void judge(const char* what, const Case& c, const workflow::ProfileJob& job,
            const HeightField& truth, std::map<std::string, Pooled>& pooled) {
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = Clock::now();
   try {
     const workflow::ProfileSummary s = workflow::run(job);
-    const double seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const double seconds = since(begin);
     const Off o = off(s.surface, s.deviation_nm, truth);
     const Measured w = s.fit.left[profile_width], h = s.fit.left[profile_height],
                    a = s.fit.left[profile_angle];
@@ -196,7 +208,7 @@ void judge(const char* what, const Case& c, const workflow::ProfileJob& job,
       squares += std::pow(m.value - true_value, 2);
       in += std::abs(m.value - true_value) <= 2 * m.standard_error;
     };
-    ++p.n, p.squares += o.rms_nm * o.rms_nm, p.within += o.within, p.seconds += seconds;
+    p.add(o.rms_nm, seconds), p.within += o.within;
     add(w, c.shape.width_nm, p.width2, p.width_in);
     add(h, c.shape.wall.height_nm, p.height2, p.height_in);
     add(a, c.shape.wall.angle_deg, p.angle2, p.angle_in);
@@ -209,6 +221,7 @@ void judge(const char* what, const Case& c, const workflow::ProfileJob& job,
 /// Walls where thresholds see them, as wide as the rim's part on the ground's side.
 void judge_thresholds(const Case& c, const workflow::ProfileJob& job, const HeightField& truth,
                       std::map<std::string, Pooled>& pooled) {
+  const auto begin = Clock::now();
   const ThresholdEdges found = find_edges(job.sem.image, FeatureKind::line);
   HeightField surface = truth;
   double width = 0, pairs = 0;
@@ -225,18 +238,17 @@ void judge_thresholds(const Case& c, const workflow::ProfileJob& job, const Heig
       surface.z_nm(x, y) = u > 0 ? c.said_nm : 0;
     }
   Pooled& p = pooled["thresholds"];
-  const double rms = off(surface, {}, truth).rms_nm;
-  ++p.n, p.squares += rms * rms, p.width2 += std::pow(width / pairs - c.shape.width_nm, 2);
+  const double seconds = since(begin), rms = off(surface, {}, truth).rms_nm;
+  p.add(rms, seconds), p.width2 += std::pow(width / pairs - c.shape.width_nm, 2);
   p.height2 += std::pow(c.said_nm - c.shape.wall.height_nm, 2);
   fmt::print("  {:28} {:5.2f} nm; width {:6.2f}\n", "thresholds", rms,
              width / pairs - c.shape.width_nm);
 }
 
-void note(const char* what, const HeightField& surface, const HeightField& truth,
-          std::map<std::string, Pooled>& pooled) {
-  const double rms = off(surface, {}, truth).rms_nm;
-  Pooled& p = pooled[what];
-  ++p.n, p.squares += rms * rms;
+void note(const char* what, Clock::time_point begin, const HeightField& surface,
+          const HeightField& truth, std::map<std::string, Pooled>& pooled) {
+  const double seconds = since(begin), rms = off(surface, {}, truth).rms_nm;
+  pooled[what].add(rms, seconds);
   fmt::print("  {:28} {:5.2f} nm\n", what, rms);
 }
 
@@ -244,6 +256,7 @@ void note(const char* what, const HeightField& surface, const HeightField& truth
 void judge_stereo(const PlacedImage& up, const PlacedImage& tilted, const HeightField& truth,
                   std::map<std::string, Pooled>& pooled) {
   constexpr int half = 4, band = 8, farthest = 3;
+  const auto begin = Clock::now();
   HeightField surface = truth;
   const auto unlike = [&](int x, int from, int by) {
     double sum_a = 0, sum_b = 0, aa = 0, bb = 0, ab = 0, n = 0;
@@ -272,13 +285,14 @@ void judge_stereo(const PlacedImage& up, const PlacedImage& tilted, const Height
       for (int y = from; y < from + band; ++y)
         surface.z_nm(x, y) = by * pixel_nm / std::sin(tilt_deg * 3.14159265358979 / 180);
     }
-  note("stereo", surface, truth, pooled);
+  note("stereo", begin, surface, truth, pooled);
 }
 
 /// Slopes by the difference of opposite quadrants, integrated along rows; the factor and what every
 /// row begins with suit the truth best.
 void judge_quadrants(const PlacedImage& right, const PlacedImage& left, const HeightField& truth,
                      std::map<std::string, Pooled>& pooled) {
+  const auto begin = Clock::now();
   Grid<double> integral(columns, rows);
   double ss = 0, sz = 0;
   for (int y = 0; y < rows; ++y) {
@@ -301,15 +315,16 @@ void judge_quadrants(const PlacedImage& right, const PlacedImage& left, const He
   HeightField surface = truth;
   for (std::size_t i = 0; i < integral.size(); ++i)
     surface.z_nm.data()[i] = sz / ss * integral.data()[i];
-  note("quadrants integrated", surface, truth, pooled);
+  note("quadrants integrated", begin, surface, truth, pooled);
 }
 
-void judge_heights(const char* what, const workflow::ReconstructJob& job) {
-  const auto begin = std::chrono::steady_clock::now();
+void judge_heights(const char* what, const workflow::ReconstructJob& job,
+                   std::map<std::string, Pooled>& pooled) {
+  const auto begin = Clock::now();
   try {
     const workflow::ReconstructSummary s = workflow::run(job);
-    const double seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const double seconds = since(begin);
+    if (s.truth) pooled[what].add(s.truth->rms_nm, seconds);
     if (s.truth)
       fmt::print("  {:28} {:5.2f} nm ({:3.0f} % in two); scan alone {:.2f}; {:.0f} s\n", what,
                  s.truth->rms_nm, 100 * s.truth->coverage_2, s.truth->start_rms_nm, seconds);
@@ -320,10 +335,28 @@ void judge_heights(const char* what, const workflow::ReconstructJob& job) {
   std::fflush(stdout);
 }
 
+void write_chart(const std::string& file, const std::map<std::string, Pooled>& pooled) {
+  io::PlotPanel panel;
+  panel.title = "Lines 100 nm high, walls of 85 degrees, pixels of 4 nm";
+  panel.x = {"time on this machine (s)", true, {}};
+  panel.y = {"root-mean-square error of the surface (nm)", true, {}};
+  for (const auto& [what, p] : pooled)
+    panel.series.push_back({what, p.each_seconds, p.each_rms_nm, {}, io::PlotStyle::points});
+  io::Plot plot;
+  plot.title = "Surfaces from several images: error against time";
+  plot.panels = {panel};
+  io::write_plot(file, plot);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
+  std::string chart;
+  if (words.size() > 1 && words[0] == "--chart") {
+    chart = words[1];
+    words.erase(words.begin(), words.begin() + 2);
+  }
   std::string model;
   if (words.size() > 1 && words[0] == "--heights") {
     model = words[1];
@@ -400,12 +433,13 @@ int main(int argc, char** argv) {
     heights.afm->scan = scan;
     // Lines look alike a pitch away: the place is given as landmarks would, 5 nm off.
     heights.pose.transform = Affine{1, 0, 4, 0, 1, -3};
-    judge_heights("heights, one view and a scan", heights);
+    judge_heights("heights, one view and a scan", heights, pooled);
     heights.views.resize(1);
     heights.views[0].image = to_x[0];
     heights.view_settings = two.view_settings;
-    judge_heights("heights, two views, a scan", heights);
+    judge_heights("heights, two views, a scan", heights, pooled);
   }
+  if (!chart.empty()) write_chart(chart, pooled);
   for (const auto& [what, p] : pooled)
     fmt::print(
         "{:28} {:5.2f} nm; width {:5.2f}, height {:5.2f} nm, angle {:4.2f} deg; within two "
