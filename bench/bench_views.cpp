@@ -3,7 +3,7 @@
 // whether their errors hold, and how long that takes. The images are by the other tier of physics:
 //   bench_views [CASES [FIRST [FOLDER [ONLY]]]]   with a folder (or ""), inputs go there; ONLY:
 //   what
-//                                                 to fit alone, as "two views and a scan"
+//                                                 to fit alone, as "one view,two views and a scan"
 //   bench_views --heights MODEL.json [CASES [FIRST [FOLDER]]]   the reconstruction of heights
 //   beside
 //   bench_views --chart CHART.svg [...]   error against time of all that is measured
@@ -28,6 +28,7 @@
 #include "surf/afm/noise.h"
 #include "surf/afm/tip_shapes.h"
 #include "surf/core/random.h"
+#include "surf/core/words.h"
 #include "surf/io/cache.h"
 #include "surf/io/height_field_file.h"
 #include "surf/io/plot.h"
@@ -365,7 +366,11 @@ int main(int argc, char** argv) {
   const int cases = !words.empty() ? std::atoi(words[0].c_str()) : 6,
             first = words.size() > 1 ? std::atoi(words[1].c_str()) : 2;
   const std::filesystem::path folder = words.size() > 2 ? words[2] : "";
-  const std::string only = words.size() > 3 ? words[3] : "";
+  const std::vector<std::string_view> only =
+      words.size() > 3 ? split(words[3], ",") : std::vector<std::string_view>();
+  const auto wanted = [&](const char* what) {
+    return only.empty() || std::ranges::find(only, what) != only.end();
+  };
   workflow::CachedLibraries libraries(io::cache_folder(""));
   std::map<std::string, Pooled> pooled;
   for (int i = first; i < first + cases; ++i) {
@@ -397,18 +402,18 @@ int main(int argc, char** argv) {
     judge_thresholds(c, job, truth, pooled);
     judge_stereo(up[0], to_x[0], truth, pooled);
     judge_quadrants(up[1], up[3], truth, pooled);
-    if (only.empty() || only == "one view") judge("one view", c, job, truth, pooled);
+    if (wanted("one view")) judge("one view", c, job, truth, pooled);
     workflow::ProfileJob two = job;
     two.views.resize(1);
     two.views[0].image = to_x[0];
     two.view_settings.tilts_deg = {tilt_deg};
-    if (only.empty() || only == "two views") judge("two views", c, two, truth, pooled);
+    if (wanted("two views")) judge("two views", c, two, truth, pooled);
     workflow::ProfileJob three = two;
     three.views.resize(2);
     three.views[1].image = to_minus_x[0];
     three.view_settings.tilts_deg = {tilt_deg, tilt_deg};
     three.view_settings.azimuths_deg = {0, 180};
-    if (only.empty() || only == "three views") judge("three views", c, three, truth, pooled);
+    if (wanted("three views")) judge("three views", c, three, truth, pooled);
     workflow::ProfileJob quadrants = two;
     for (const int k : {1, 3}) {
       quadrants.views.emplace_back();
@@ -416,13 +421,12 @@ int main(int argc, char** argv) {
     }
     quadrants.view_settings.tilts_deg = {tilt_deg, 0, 0};
     quadrants.view_settings.signals = {"SE", "BSE-right", "BSE-left"};
-    if (only.empty() || only == "two views and quadrants")
+    if (wanted("two views and quadrants"))
       judge("two views and quadrants", c, quadrants, truth, pooled);
     workflow::ProfileJob both = two;
     both.height_nm = 0, both.height_error_nm = 0;
     both.scan = scan;
-    if (only.empty() || only == "two views and a scan")
-      judge("two views and a scan", c, both, truth, pooled);
+    if (wanted("two views and a scan")) judge("two views and a scan", c, both, truth, pooled);
     if (model.empty()) continue;
     workflow::ReconstructJob heights;
     heights.model.file = model;
