@@ -40,7 +40,7 @@ CHAIN = {"LevelMethod": ("Plane", "level.method=plane"),
          "LevelDegree": (1, "level.degree=1", {"LevelMethod": "Polynomial"}),
          "LevelTolerance": (1.5, "level.tolerance_nm=1.5", {"LevelMethod": "Hough"}), "Rows": ("Median", "level.rows=median"),
          "HeightNoise": ("0.25,0.5", "scan.height_noise_nm=0.25,0.5"), "TipSize": (7, "reconstruction.tip_size=7"),
-         "Energy": (1000, "beam.energy_ev=1000"), "Spot": (0, "beam.spot_nm=0"),
+         "Energy": (1000, "beam.energy_ev=1000"), "Spot": (0, "beam.spot_nm=0"), "Signal": ("SE", "reconstruction.signal=SE"),
          "Physics": ("barrier=classical", "simulation.physics=inelastic=monsel,elastic=mott,atoms=free,loss=joy-luo,secondaries=on,barrier=classical"),
          "Objective": ("Mutual information", "registration.objective=mutual-information")}
 STEPS = {
@@ -76,6 +76,7 @@ STEPS = {
         "Azimuth": ("90", "beam.azimuth_deg=90", {"views": True, "Tilt": "3"}),
         "TiltError": (0.2, "reconstruction.tilt_error_deg=0.2"),
         "ViewEnergy": ("1000", "reconstruction.view_energy_ev=1000", {"views": True}),
+        "ViewSignal": ("SE", "reconstruction.view_signal=SE", {"views": True}),
         "ViewGains": ("2,3,4", "reconstruction.view_gains=2,3,4", {"views": True}),
         "ViewNoise": ("0,9", "reconstruction.view_noise=0,9,", {"views": True}),
         "ViewPlace": ("0,0", "reconstruction.view_place=0,0", {"views": True}),
