@@ -354,6 +354,9 @@ int main(int argc, char** argv) {
   for (const auto& [side, spacing] : {std::pair{12, 4}, std::pair{12, 0}, std::pair{24, 0}})
     plot.panels.push_back(compare_global(chosen_on, side, spacing, seconds));
   plot.columns = 3;
+  // One legend for each row, at its end, where there is room.
+  for (std::size_t i = 0; i < plot.panels.size(); ++i)
+    plot.panels[i].legend = i % 3 == 2 || i + 1 == plot.panels.size();
   io::write_plot(words[1], plot);
   return 0;
 }
