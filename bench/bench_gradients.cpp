@@ -173,7 +173,7 @@ int main(int argc, char** argv) {
     for (const double r : ratios) mean += r / groups;
     for (const double r : ratios) spread += (r - mean) * (r - mean) / (groups - 1) / groups;
     fmt::print("  {:12}  {:.3f} +- {:.3f}                           {:.3f}\n", s.detectors[d].name,
-               product(own, own) / both, std::sqrt(spread),
+               std::sqrt(product(own, own) / truth2), std::sqrt(spread),
                both / std::sqrt(product(own, own) * truth2));
   }
 }

@@ -145,11 +145,59 @@ TEST_F(ReconstructionOfQuadrants, TheFirstImageMayBeOne) {
   EXPECT_NE(s.verdict, ReconstructionVerdict::not_registered);
   EXPECT_EQ(s.result.gains.size(), 1u);
   EXPECT_THAT(report("result")["repeat"].get<std::string>(), HasSubstr("--signal BSE-top"));
-  EXPECT_FALSE(s.resumed);
   job_.model.signal = "BSE-bottom";
   s = run(job_);
   EXPECT_EQ(s.verdict, ReconstructionVerdict::not_registered);
   EXPECT_THAT(s.reasons, Contains(HasSubstr("BSE-top")));
+}
+
+TEST_F(ReconstructionOfQuadrants, StandInTheImagesFrameHoweverTheScanIsTurned) {
+  HeightField& scan = job_.afm->scan;
+  HeightField turned = scan;
+  const int w = scan.z_nm.width(), h = scan.z_nm.height();
+  turned.z_nm = Grid<double>(h, w);
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x) turned.z_nm(h - 1 - y, x) = scan.z_nm(x, y);
+  turned.valid = {};
+  scan = turned;
+  job_.pose.transform = Affine{0, -1, (h - 1) * pitch - 45, 1, 0, 60};
+  job_.sem->image = image_of("BSE-top", 2);
+  job_.model.signal = "BSE-top";
+  EXPECT_NE(run(job_).verdict, ReconstructionVerdict::not_registered);
+  job_.model.signal = "BSE-right";
+  const ReconstructSummary s = run(job_);
+  EXPECT_EQ(s.verdict, ReconstructionVerdict::not_registered);
+  EXPECT_THAT(s.reasons, Contains(HasSubstr("looks like the image of BSE-top")));
+  // Searched for, the turn is found by SE, then by what is told.
+  job_.pose.transform.reset();
+  job_.pose.accept_unverified = true;
+  job_.model.signal = "BSE-top";
+  const Affine map = run(job_).pose->sem_to_afm;
+  EXPECT_NEAR(map.yx, 1, 0.1);
+  EXPECT_NEAR(map.xy, -1, 0.1);
+}
+
+TEST_F(ReconstructionOfQuadrants, AModelOfADetectorOfThatNameMayBeOfAnother) {
+  const auto refused = [&](const char* what) {
+    EXPECT_THAT([&] { run(job_); }, ThrowsMessage<UsageError>(HasSubstr(what)));
+  };
+  job_.model.signal = "BSE-right:cone=0deg..30deg";
+  refused("reconstruction.signal");
+  job_.model.signal.clear();
+  job_.film = "SiO2";
+  job_.calibration = GivenCalibration{{300, 300}, 20};
+  job_.views = {view_of("BSE-left", 2)};
+  job_.view_settings.signals = {"BSE-left"};
+  refused("reconstruction.film");
+}
+
+TEST_F(ReconstructionOfQuadrants, AListMayBeginWithTheFirstImage) {
+  job_.sem->image = image_of("BSE-top", 2);
+  job_.views = {view_of("BSE-left", 3)};
+  job_.view_settings.signals = {"BSE-top", "BSE-left"};
+  const ReconstructSummary s = run(job_);
+  EXPECT_EQ(s.model->model->channels(), std::vector<std::string>{"BSE-top"});
+  EXPECT_EQ(s.views.at(0).signal, "BSE-left");
 }
 
 TEST_F(ReconstructionOfQuadrants, SignalsThatNoModelKnowsAreRefused) {
@@ -162,10 +210,12 @@ TEST_F(ReconstructionOfQuadrants, SignalsThatNoModelKnowsAreRefused) {
   refused("reconstruction.signal");
   job_.model.signal.clear();
   job_.views = {view_of("BSE-left", 2)};
+  job_.model.signal = "BSE-top";
   job_.view_settings.signals = {"BSE-left", "BSE-left"};
   refused("of the first SEM image");
+  job_.model.signal.clear();
   job_.view_settings.signals = {"CL"};
-  refused("reconstruction.view_signal");
+  refused("reconstruction.signal");
 }
 
 TEST(SignalDetectors, OneModelServesAllQuadrants) {

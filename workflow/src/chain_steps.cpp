@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
+#include <utility>
 
+#include "seen_from.h"
 #include "sem_frame.h"
 #include "surf/afm/resample.h"
 #include "surf/core/error.h"
@@ -66,15 +69,59 @@ PlacedImage simulated_view(const HeightField& surface, const ImageModel& model, 
   return view;
 }
 
+/// By how many quarters the detectors of an image are turned clockwise in the scan's frame.
+int clockwise(const Affine& sem_to_afm) {
+  const double turn = std::atan2(sem_to_afm.yx, sem_to_afm.xx) / (0.5 * std::numbers::pi);
+  return static_cast<int>(std::lround(4 - turn)) % 4;
+}
+
+/// A surface as detectors see it that are turned.
+PlacedImage lit_view(const HeightField& surface, const ImageModel& model, int quarters,
+                     double pixel_nm, int threads) {
+  PlacedImage view = simulated_view(surface, model, pixel_nm, threads);
+  if (quarters == 0) return view;
+  ModelOptions options;
+  options.threads = threads;
+  view.values =
+      seen_from(model, with_holes_filled(resampled(surface, pixel_nm)), quarters, options).front();
+  return view;
+}
+
+/// How the scan is turned says where a detector at a side stands, which says how the surface is
+/// lit: of the four ways the one that agrees with what it leads to, and best with the image.
+void register_lit(const PreparedAfm& afm, const PlacedImage& sem, const StoredModel& model,
+                  const RegistrationOptions& options, int threads, Pose& pose) {
+  const auto rank = [](const Registration& r, int quarters) {
+    const bool agrees = clockwise(r.sem_to_afm) == quarters;
+    return (agrees ? 4 : 0) + (r.verdict == RegistrationVerdict::verified ? 2 : 0) + r.score;
+  };
+  double best = 0;
+  for (int quarters = 0; quarters < 4; ++quarters) {
+    if (options.start && clockwise(*options.start) != quarters) continue;
+    RegistrationOptions own = options;
+    own.watch = options.watch.part(0.25 * quarters, 0.25 * (quarters + 1));
+    PlacedImage lit = lit_view(afm.eroded(), *model.model, quarters, sem.pitch_x_nm, threads);
+    Registration found = register_images(sem, lit, own);
+    const double own_rank = rank(found, quarters);
+    if (pose.registration && own_rank <= best) continue;
+    best = own_rank;
+    pose.registration = std::move(found);
+    pose.simulated = std::move(lit);
+  }
+}
+
 Pose pose_of(const PoseOptions& o, const PreparedAfm& afm, const PlacedImage& sem,
              const StoredModel& model, int threads, const Reporter& reporter) {
   begin(reporter, "registration");
   Pose pose;
-  pose.simulated = simulated_view(afm.eroded(), *model.model, sem.pitch_x_nm, threads);
   if (o.transform) {
     pose.sem_to_afm = *o.transform;
+    pose.simulated =
+        lit_view(afm.eroded(), *model.model, model.sided ? clockwise(pose.sem_to_afm) : 0,
+                 sem.pitch_x_nm, threads);
     return pose;
   }
+  pose.simulated = simulated_view(afm.eroded(), *model.model, sem.pitch_x_nm, threads);
   RegistrationOptions options = o.registration;
   if (!o.landmarks.empty()) {
     pose.landmarks = fit_landmarks(o.landmarks);
@@ -86,7 +133,8 @@ Pose pose_of(const PoseOptions& o, const PreparedAfm& afm, const PlacedImage& se
   }
   options.threads = threads;
   options.watch = reporter.watch();
-  pose.registration = register_images(sem, pose.simulated, options);
+  if (model.sided) register_lit(afm, sem, model, options, threads, pose);
+  else pose.registration = register_images(sem, pose.simulated, options);
   pose.sem_to_afm = pose.registration->sem_to_afm;
   return pose;
 }

@@ -47,6 +47,7 @@ std::string transposed(const std::string& signal) {
 std::vector<ProfileView> views_of(const ProfileJob& job) {
   const std::vector<std::string> signals =
       signals_of(job.view_settings, job.views.size(), job.signal);
+  for (const std::string& signal : signals) detectors_of(signal, "`reconstruction.view_signal`");
   std::vector<ProfileView> out{{job.sem.image.pitch_x_nm, 0, 0, job.energy_ev, job.signal}};
   const std::vector<ViewAngles> angles =
       angles_of(job.view_settings, job.views.size(), job.energy_ev);

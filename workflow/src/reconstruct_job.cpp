@@ -22,7 +22,6 @@
 #include "seen_from.h"
 #include "sem_frame.h"
 #include "sem_preparation.h"
-#include "surf/afm/resample.h"
 #include "surf/core/error.h"
 #include "surf/core/instruction_set.h"
 #include "surf/core/units.h"
@@ -318,14 +317,15 @@ FilmEffect film_of(const ReconstructJob& job, const ReconstructSummary& s, const
 std::string facing_doubt(const ReconstructSummary& s, const PlacedImage& image, int threads) {
   ModelOptions options;
   options.threads = threads;
-  PlacedImage view = s.pose->simulated;
-  const HeightField field = with_holes_filled(resampled(s.afm->eroded(), image.pitch_x_nm));
-  Facing facing{correlation_at(image, view, s.pose->sem_to_afm).value_or(0)};
-  for (int quarters = 1; quarters < 4; ++quarters) {
-    view.values = seen_from(*s.model->model, field, quarters, options).front();
-    const double there = correlation_at(image, view, s.pose->sem_to_afm).value_or(0);
-    if (there > facing.best) facing.best = there, facing.quarters = quarters;
-  }
+  const SurfaceUnderSem under = surface_under_sem(s.afm->eroded(), image, s.pose->sem_to_afm);
+  PlacedImage view = image;
+  view.valid = under.known;
+  const auto from = [&](int quarters) {
+    view.values = seen_from(*s.model->model, under.surface, quarters, options).front();
+    return correlation_at(image, view, {}).value_or(0);
+  };
+  Facing facing(from(0));
+  for (int quarters = 1; quarters < 4; ++quarters) facing.add(from(quarters), quarters);
   return doubt_of(facing, s.model->model->channels().front());
 }
 
@@ -372,6 +372,7 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
     if (s.saturated > 0)
       told.note(fmt::format("SEM: {} saturated pixels are left out", s.saturated));
     ModelRequest request = job.model;
+    request.signal = first_signal(job);
     if (request.folder.empty()) request.folder = job.folder;  // no cache folder
     s.model = model_of(request, image, told);
   }
@@ -394,6 +395,7 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
   }
   if (job.afm && job.sem && s.model->sided && !job.pose.accept_unverified)
     if (std::string doubt = facing_doubt(s, image, threads); !doubt.empty()) {
+      keep_registration(job, image, s);
       s.verdict = ReconstructionVerdict::not_registered;
       s.reasons = {"SEM image: " + doubt};
       return s;

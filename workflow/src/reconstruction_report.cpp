@@ -146,6 +146,7 @@ Json views_json(const ReconstructJob& job, const ReconstructSummary& s) {
     json["tilt_deg"] = v.tilt_deg;
     json["azimuth_deg"] = v.azimuth_deg;
     if (!v.signal.empty()) json["signal"] = v.signal;
+    if (!job.views[k].reading.channel.empty()) json["channel"] = job.views[k].reading.channel;
     json["model"] = {{"file", view_model_name(s, k)},
                      {"sha256", v.model.sha256},
                      {"energy_ev", v.model.trained.scope.energy_ev}};
@@ -298,6 +299,7 @@ ReconstructJob parameters_used(const ReconstructJob& job, const ReconstructSumma
   used.model = {};
   used.model.signal = job.model.signal;
   used.pose = {};
+  used.pose.accept_unverified = job.pose.accept_unverified;
   used.options = options_of(job, s);
   if (afm) {
     used.afm->preparation.noise = afm->noise;
@@ -340,7 +342,10 @@ std::vector<std::string> repeating_command(const ReconstructJob& job, const Reco
   }
   if (sem) {
     add("sem", job.sem->file.string());
-    for (const SemInput& view : job.views) add("sem", view.file.string());
+    for (const SemInput& view : job.views)
+      add("sem", view.reading.channel.empty()
+                     ? view.file.string()
+                     : fmt::format("{}:{}", view.file.string(), view.reading.channel));
     add("model", (job.folder / "model.json").string());
     for (std::size_t k = 0; k < job.views.size(); ++k)
       add("view-model", (job.folder / view_model_name(s, k)).string());

@@ -17,8 +17,13 @@ ModelImages seen_from(const ImageModel& model, const HeightField& field, int qua
 /// How an image of a detector at a side agrees with what it should show, and with what it would
 /// show elsewhere.
 struct Facing {
-  double told = 0;   ///< correlation with the detector where it is said to be
-  double best = 0;   ///< the largest elsewhere
+  explicit Facing(double correlation) : told(correlation), best(correlation) {}
+  void add(double correlation, int at_quarters) {
+    if (correlation > best) best = correlation, quarters = at_quarters;
+  }
+
+  double told;       ///< correlation with the detector where it is said to be
+  double best;       ///< the largest anywhere
   int quarters = 0;  ///< where that is
 };
 

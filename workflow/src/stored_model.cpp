@@ -69,9 +69,23 @@ std::string plain(std::string text) {
   return text;
 }
 
-/// The channels of a model that an image shows.
-std::vector<std::string> wanted_channels(const std::vector<std::string>& all, const ModelRequest& r,
-                                         const fs::path& file) {
+/// Detectors of one name may differ.
+void refuse_another(const std::string& signal, const std::string& name,
+                    const std::vector<mc::Detector>& known) {
+  const std::vector<mc::Detector> asked = detectors_of(signal, signal_subject);
+  const auto own = std::ranges::find(known, name, &mc::Detector::name);
+  if (asked.empty() || own == known.end()) return;
+  if (mc::format_detector(asked.front()) != mc::format_detector(*own))
+    throw UsageError(signal_subject,
+                     fmt::format("the model's {} is {}, and the image's {}", name,
+                                 mc::format_detector(*own), mc::format_detector(asked.front())),
+                     "Give a model that was trained for the image's");
+}
+
+/// The channels of a model that an image shows. `known`: the detectors that it was taught.
+std::vector<std::string> wanted_channels(const std::vector<std::string>& all,
+                                         const std::vector<mc::Detector>& known,
+                                         const ModelRequest& r, const fs::path& file) {
   const auto has = [&](const std::string& name) {
     return std::ranges::find(all, name) != all.end();
   };
@@ -82,6 +96,7 @@ std::vector<std::string> wanted_channels(const std::vector<std::string>& all, co
     return usual.empty() ? all : usual;
   }
   const std::string name = has(r.signal) ? r.signal : channel_of(r.signal, signal_subject);
+  if (!has(r.signal)) refuse_another(r.signal, name, known);
   if (!has(name))
     throw UsageError(signal_subject,
                      fmt::format("{} knows {}, not {}", file.string(), fmt::join(all, ", "), name),
@@ -108,9 +123,11 @@ StoredModel load(const fs::path& file, const ModelRequest& r) {
                     scope.pixel_nm, r.pixel_nm),
         "Leave out `reconstruction.model`, so that one is trained, or check `sem_pixel_size`");
   const std::shared_ptr<const ImageModel> all = make_model(stored.trained);
-  const std::vector<std::string> channels = wanted_channels(all->channels(), r, file);
+  std::vector<mc::Detector> known = mc::default_detectors();
+  for (mc::Detector& d : taught_by(stored.trained)) known.push_back(std::move(d));
+  const std::vector<std::string> channels = wanted_channels(all->channels(), known, r, file);
   stored.model = with_channels(all, channels);
-  for (const mc::Detector& d : taught_by(stored.trained))
+  for (const mc::Detector& d : known)
     stored.sided = stored.sided || (mc::looks_from_a_side(d) && channels.front() == d.name);
   return stored;
 }
@@ -151,10 +168,12 @@ std::vector<mc::Detector> taught_by(const TrainedModel& model) {
   std::vector<mc::Detector> all;
   const auto note = model.record.notes.find(detectors_note);
   if (note == model.record.notes.end()) return all;
-  for (const std::string_view one : split(note->second, ";"))
+  for (const std::string_view one : split(note->second, ";")) {
+    if (one.find_first_not_of(' ') == std::string_view::npos) continue;
     for (mc::Detector& d :
          mc::parse_detectors(std::string(one.substr(one.find_first_not_of(' '))), "model"))
       all.push_back(std::move(d));
+  }
   return all;
 }
 

@@ -278,7 +278,8 @@ std::string training_command(const TrainJob& job) {
   }
   for (const std::filesystem::path& file : job.material_files) add("--materials", file_name(file));
   add("--material", job.material.name);
-  const std::vector<std::string> changed = command_words(job, TrainJob{});
+  const std::vector<std::string> changed =
+      command_words(job, TrainJob{}, {{"simulation.detectors", "--detector"}});
   words.insert(words.end(), changed.begin(), changed.end());
   return quoted_command(words);
 }

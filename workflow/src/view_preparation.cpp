@@ -13,6 +13,7 @@
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/registration/find_shift.h"
+#include "surf/workflow/signal_detectors.h"
 
 namespace surf::workflow {
 namespace {
@@ -90,6 +91,10 @@ ImageShift nearest_of_best(const std::vector<ImageShift>& shifts, Point2 expecte
 
 }  // namespace
 
+std::string first_signal(const ReconstructJob& job) {
+  return first_signal(job.view_settings, job.views.size(), job.model.signal);
+}
+
 bool all_known(const KnownViews& s) {
   return !s.gains.empty() && !s.noises.empty() && !s.places_nm.empty();
 }
@@ -100,6 +105,14 @@ void check_views(const ReconstructJob& job) {
   if (views > 0 && !job.sem)
     throw UsageError("`reconstruction.sem`", "further SEM images need a first one", "Give one");
   angles_of(job.view_settings, views, 0);
+  const std::vector<std::string> signals = signals_of(job.view_settings, views, first_signal(job));
+  // Names of a model's own channels are known where there is one.
+  if (job.model.file.empty() && v.models.empty())
+    for (const std::string& signal : signals)
+      if (!signal.empty()) detectors_of(signal, "`reconstruction.view_signal`");
+  if (!job.film.empty() && views > 0)
+    throw UsageError("`reconstruction.film`", "a film is known to the first image's model alone",
+                     "Leave it out, or leave out further images");
   for_each_view(v.models, views, std::filesystem::path(), "`reconstruction.view_model`");
   const auto known = [&](std::size_t count, const char* subject) {
     if (count != 0 && count != views)
@@ -128,7 +141,7 @@ std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary
   const std::vector<ViewAngles> angles = angles_of(job.view_settings, views, 0);
   const auto models =
       for_each_view(settings.models, views, std::filesystem::path(), "`reconstruction.view_model`");
-  const std::vector<std::string> signals = signals_of(job.view_settings, views, job.model.signal);
+  const std::vector<std::string> signals = signals_of(job.view_settings, views, first_signal(job));
   const int threads = job.options.threads;
   for (std::size_t k = 0; k < views; ++k) {
     PreparedView found;
@@ -149,7 +162,11 @@ std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary
     SemView view;
     view.pose = {angles[k].tilt_deg, angles[k].azimuth_deg, {}};
     view.tilt_error_deg = job.view_settings.tilt_error_deg;
-    const bool same_signal = model.channels() == sem.model->channels();
+    const bool same_signal =
+        signals[k] == first_signal(job) && model.channels() == sem.model->channels();
+    const bool same_frame = found.tilt_deg == 0 && image.placement() == sem.image.placement() &&
+                            image.values.width() == sem.image.values.width() &&
+                            image.values.height() == sem.image.values.height();
     const std::vector<double> gains =
         same_signal ? sem.gains : std::vector<double>(model.channels().size(), 1.0);
 
@@ -174,21 +191,22 @@ std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary
     }
     if (settings.places_nm.empty() && compared) found.doubt = doubt_of(found);
     if (surface && found.model.sided) {
-      Facing facing{shift.correlation};
-      for (int quarters = 1; quarters < 4; ++quarters) {
-        const std::vector<ImageShift> there_too = find_shifts(
-            predicted(*surface, image, view.pose, model, gains, threads, quarters), image);
-        if (!there_too.empty() && there_too.front().correlation > facing.best)
-          facing.best = there_too.front().correlation, facing.quarters = quarters;
-      }
+      // All at one place: of a scan, or where the image suits best.
+      const Affine map = same_frame ? Affine{} : Affine{1, 0, shift.x_nm, 0, 1, shift.y_nm};
+      const auto from = [&](int quarters) {
+        return correlation_at(
+                   image, predicted(*surface, image, view.pose, model, gains, threads, quarters),
+                   map)
+            .value_or(0);
+      };
+      Facing facing(from(0));
+      for (int quarters = 1; quarters < 4; ++quarters) facing.add(from(quarters), quarters);
       if (std::string doubt = doubt_of(facing, model.channels().front()); !doubt.empty())
         found.doubt = std::move(doubt);
     }
     view.pose.to_plane = {1, 0, shift.x_nm, 0, 1, shift.y_nm};
-    view.same_scan = !same_signal && found.tilt_deg == 0 && shift.x_nm == 0 && shift.y_nm == 0 &&
-                     image.placement() == sem.image.placement() &&
-                     image.values.width() == sem.image.values.width() &&
-                     image.values.height() == sem.image.values.height();
+    view.same_scan = !same_signal && same_frame && shift.x_nm == 0 && shift.y_nm == 0 &&
+                     found.model.trained.scope.energy_ev == s.model->trained.scope.energy_ev;
     if (view.same_scan)
       told.note(
           fmt::format("view {}: taken as of the first image's scan, by another detector", k + 2));
@@ -209,6 +227,10 @@ std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary
                                    k + 2),
                        "Give a gain and an offset for it");
     } else if (!surface) {
+      told.warn(fmt::format(
+          "view {}: taken to have the first image's gain and offset, because there is no scan to "
+          "find its own with; say `reconstruction.view_gains` if you know them",
+          k + 2));
       given = GivenCalibration{gains, sem.offset};
     }
     const std::optional<SemNoise> noise =
@@ -245,7 +267,7 @@ std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary
     s.views.push_back(std::move(found));
     out.push_back(std::move(view));
   }
-  if (!job.afm &&
+  if (!job.afm && !s.model->sided &&
       std::ranges::none_of(s.views, [](const PreparedView& v) { return v.model.sided; }))
     told.warn(
         "heights from SEM images alone begin flat, and hardly leave that: give a scan, or images "

@@ -10,6 +10,9 @@ namespace surf::workflow {
 /// More further SEM images than anybody has.
 inline constexpr std::size_t most_views = 15;
 
+/// What the first image shows.
+std::string first_signal(const ReconstructJob& job);
+
 /// Whether places, gains and noise are given, so that no surface is needed to find them.
 bool all_known(const KnownViews& known);
 

@@ -9,7 +9,6 @@
 #include "surf/core/words.h"
 #include "surf/mc/physics/physics.h"
 #include "surf/reconstruction/view.h"
-#include "surf/workflow/signal_detectors.h"
 
 namespace surf::workflow {
 
@@ -48,12 +47,14 @@ void describe(ParameterVisitor& visit, ViewSettings& views) {
                     .form = "ENERGY"});
   visit.form(
       {.name = "reconstruction.view_signal",
-       .help = "What each SEM image shows, or each after the first",
+       .help = "What each SEM image shows, or each after the first, with semicolons between",
        .otherwise = "as the first",
        .form = "SIGNAL"},
       [&] { return fmt::format("{}", fmt::join(views.signals, ";")); },
       [&](std::string_view text, const std::string&) {
-        for (const std::string_view one : split(text, ";")) views.signals.emplace_back(one);
+        for (const std::string_view one : split(text, ";"))
+          if (const auto first = one.find_first_not_of(' '); first != std::string_view::npos)
+            views.signals.emplace_back(one.substr(first, one.find_last_not_of(' ') + 1 - first));
       },
       FieldKind::list);
   visit(views.tilt_error_deg,
@@ -83,6 +84,10 @@ std::vector<ViewAngles> angles_of(const ViewSettings& s, std::size_t views, doub
   return out;
 }
 
+std::string first_signal(const ViewSettings& s, std::size_t views, const std::string& own) {
+  return own.empty() && s.signals.size() == views + 1 ? s.signals.front() : own;
+}
+
 std::vector<std::string> signals_of(const ViewSettings& s, std::size_t views,
                                     const std::string& first) {
   const char* subject = "`reconstruction.view_signal`";
@@ -91,7 +96,6 @@ std::vector<std::string> signals_of(const ViewSettings& s, std::size_t views,
                      fmt::format("it says '{}' of the first SEM image, whose own option says '{}'",
                                  s.signals.front(), first),
                      "Say it once, and give one here for each image after the first");
-  for (const std::string& signal : s.signals) detectors_of(signal, subject);
   return for_each_view(s.signals, views, first, subject);
 }
 

@@ -333,15 +333,16 @@ SightFit SightOfWalls::result(const Walls& walls, const Eigen::MatrixXd& covaria
 }
 
 double SightOfWalls::unexplained(const std::vector<MeanProfile>& profiles) const {
-  double n = 0, sum = 0, squares = 0, left = 0;
+  double n = 0, sum = 0, squares = 0, left = 0, noise = 0;
   for (const MeanProfile& p : profiles)
     for (std::size_t i = 0; i < p.u_nm.size(); ++i) {
       if (!std::isfinite(p.measured[i])) continue;
       ++n, sum += p.measured[i], squares += p.measured[i] * p.measured[i];
       left += std::pow(p.measured[i] - (p.fitted[i] - bumps_at(p.u_nm[i])), 2);
+      noise += p.standard_error[i] * p.standard_error[i];
     }
-  const double variation = squares - sum * sum / n;
-  return variation > 0 ? std::sqrt(left / variation) : 0;
+  const double variation = squares - sum * sum / n - noise;
+  return variation > 0 ? std::sqrt(std::max(left - noise, 0.0) / variation) : 1;
 }
 
 std::vector<MeanProfile> SightOfWalls::profiles(const Walls& walls) const {

@@ -64,17 +64,20 @@ class DetectorsField final : public Field {
   }
   void read(std::string_view text, const std::string& subject) override {
     detectors_.clear();
+    add(text, subject);
+  }
+  void add(std::string_view text, const std::string& subject) override {
     for (std::size_t from = 0; from < text.size();) {
       const std::size_t end = std::min(text.find(';', from), text.size());
       const std::size_t first = text.find_first_not_of(' ', from);
-      if (first < end)
-        add(text.substr(first, text.find_last_not_of(' ', end - 1) + 1 - first), subject);
+      if (first < end) {
+        const std::string_view one =
+            text.substr(first, text.find_last_not_of(' ', end - 1) + 1 - first);
+        for (Detector& d : parse_detectors(std::string(one), subject))
+          detectors_.push_back(std::move(d));
+      }
       from = end + 1;
     }
-  }
-  void add(std::string_view text, const std::string& subject) override {
-    for (Detector& d : parse_detectors(std::string(text), subject))
-      detectors_.push_back(std::move(d));
   }
 
  private:

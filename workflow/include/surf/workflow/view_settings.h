@@ -30,8 +30,11 @@ struct ViewAngles {
 std::vector<ViewAngles> angles_of(const ViewSettings& settings, std::size_t views,
                                   double energy_ev);
 
+/// What the first image shows: what its own option says, or a list that includes it.
+std::string first_signal(const ViewSettings& settings, std::size_t views, const std::string& own);
+
 /// What each further image shows; `first`: what the first one shows. Throws UsageError as
-/// `angles_of`, for what is no signal, and for a list that says otherwise of the first image.
+/// `angles_of`, and for a list that says otherwise of the first image.
 std::vector<std::string> signals_of(const ViewSettings& settings, std::size_t views,
                                     const std::string& first);
 
