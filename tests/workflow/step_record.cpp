@@ -68,6 +68,14 @@ TEST(StepRecord, TheCommandOfATrainingSaysWhatDiffers) {
             "semsurf train 'a scan.gwy' --signal image.tif:InLens --material Si --hidden 0 "
             "--model-error 1.3% "
             "--multi-resolution --energy 2.5keV --accuracy 2% --cutoff 5eV");
+  TrainJob quadrants;
+  quadrants.detectors = mc::parse_detectors("quadrants", "test");
+  const std::string command = training_command(quadrants);
+  const auto from = command.find("--detector '"), to = command.find('\'', from + 12);
+  ASSERT_NE(from, std::string::npos) << command;
+  TrainJob again;
+  set_parameter(again, "simulation.detectors", command.substr(from + 12, to - from - 12));
+  EXPECT_EQ(training_command(again), command);
   for (const auto& [name, text] :
        std::map<std::string, std::string>{{"training.surfaces", "12"},
                                           {"training.edge", "flat"},
