@@ -16,7 +16,7 @@ LIBRARIES = ("libsurf", "mc_sim", "io", "workflow")
 OTHERS = {"io/src/afm/gwyddion_program.cpp": {"--no-log-to-file", "--convert-to-gwy"},
           "io/src/afm/gwyddion_program.h": {"--convert-to-gwy"},
           "libsurf/include/surf/core/command_words.h": {"--level-method", "--working-distance"},
-          "workflow/src/train_parameters.cpp": {"--images", "--signal", "--materials", "--material"},
+          "workflow/src/train_parameters.cpp": {"--images", "--signal", "--materials", "--material", "--detector"},
           "workflow/src/reconstruction_report.cpp": {"--height-noise", "--level-method", "--level-degree",
                                                      "--level-tolerance"},
           "io/src/web/web_page_template.h": {"--semsurf"}}   # <!--semsurf:title-->
