@@ -222,17 +222,24 @@ TEST_F(ProfileJobTest, LeftAndRightAreTheFeaturesOwn) {
   job_.kind = FeatureKind::trench;
   job_.walls_apart = true;
   job_.electrons = 10, job_.middle_electrons = 10;
+  // The gap in the middle: half a pitch aside. Its left wall is blurred.
+  constexpr int period = 50, wall = 29;
   PlacedImage& image = job_.sem.image;
-  for (int y = 0; y < 24; ++y)  // between 20 and 80 nm: a gap; its left wall is blurred
-    for (int x = 50; x < 60; ++x) image.values(x, y) = 0.5 * (image.values(x, y) + 700);
+  const Grid<double> lines = image.values;
+  for (int y = 0; y < 24; ++y)
+    for (int x = 0; x < 90; ++x) {
+      const int from = x + period / 2;
+      image.values(x, y) = lines(from < 90 ? from : from - period, y);
+      if (std::abs(x - wall) <= 5) image.values(x, y) = 0.5 * (image.values(x, y) + 700);
+    }
   const ProfileSummary s = run(job_);
   const std::string csv = io::read_file(job_.folder / "profiles.csv");
   ASSERT_EQ(s.fit.sights.front().profiles.size(), 2u);
   EXPECT_EQ(csv.substr(csv.find('\n') + 1, 5),
             s.fit.sights.front().profiles[0].material_right ? "right" : "left,");
+  ASSERT_EQ(s.fit.edges().size(), 2u);
   for (const FittedEdge& e : s.fit.edges())
-    EXPECT_EQ(e.edge.material_right, e.place_nm.value > 45 + 4 || e.place_nm.value < -40)
-        << e.place_nm.value;
+    EXPECT_EQ(e.edge.material_right, e.place_nm.value > 90) << e.place_nm.value;
 }
 
 TEST_F(ProfileJobTest, SaysThatABeamWasTiltedToTheOtherSide) {
