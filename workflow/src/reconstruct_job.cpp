@@ -314,19 +314,16 @@ FilmEffect film_of(const ReconstructJob& job, const ReconstructSummary& s, const
 }
 
 /// Why the SEM image is not of the detector that was told.
-std::string facing_doubt(const ReconstructSummary& s, const PlacedImage& image, int threads) {
+std::string doubt_of_detector(const ReconstructSummary& s, const PlacedImage& image, int threads) {
   ModelOptions options;
   options.threads = threads;
   const SurfaceUnderSem under = surface_under_sem(s.afm->eroded(), image, s.pose->sem_to_afm);
   PlacedImage view = image;
   view.valid = under.known;
-  const auto from = [&](int quarters) {
+  return facing_doubt(s.model->model->channels().front(), [&](int quarters) {
     view.values = seen_from(*s.model->model, under.surface, quarters, options).front();
-    return correlation_at(image, view, {}).value_or(0);
-  };
-  Facing facing(from(0));
-  for (int quarters = 1; quarters < 4; ++quarters) facing.add(from(quarters), quarters);
-  return doubt_of(facing, s.model->model->channels().front());
+    return correlation_at(image, view, {});
+  });
 }
 
 /// Collects the warnings of the chain's steps for a job.
@@ -394,7 +391,7 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
     }
   }
   if (job.afm && job.sem && s.model->sided && !job.pose.accept_unverified)
-    if (std::string doubt = facing_doubt(s, image, threads); !doubt.empty()) {
+    if (std::string doubt = doubt_of_detector(s, image, threads); !doubt.empty()) {
       keep_registration(job, image, s);
       s.verdict = ReconstructionVerdict::not_registered;
       s.reasons = {"SEM image: " + doubt};

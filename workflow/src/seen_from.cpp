@@ -50,21 +50,30 @@ ModelImages seen_from(const ImageModel& model, const HeightField& field, int qua
   return images;
 }
 
-std::string doubt_of(const Facing& f, const std::string& channel) {
-  if (transformed(f.best) <= transformed(f.told) + clearly_other) return {};
+bool clearly_larger(double correlation, double than) {
+  return transformed(correlation) > transformed(than) + clearly_other;
+}
+
+std::string facing_doubt(const std::string& channel,
+                         const std::function<double(int quarters)>& correlation_from) {
+  const double told = correlation_from(0);
+  double best = told;
+  int at = 0;
+  for (int quarters = 1; quarters < 4; ++quarters)
+    if (const double there = correlation_from(quarters); there > best) best = there, at = quarters;
+  if (!clearly_larger(best, told)) return {};
   const auto own = std::ranges::find(quadrants, channel);
   const std::string other =
       own == quadrants.end()
-          ? fmt::format("a detector {} degrees clockwise from it", 90 * f.quarters)
-          : quadrants[static_cast<std::size_t>(own - quadrants.begin() + 4 - f.quarters) % 4];
+          ? fmt::format("a detector {} degrees clockwise from it", 90 * at)
+          : quadrants[static_cast<std::size_t>(own - quadrants.begin() + 4 - at) % 4];
   return fmt::format(
       "it looks like the image of {} (correlation {:.2f}, and {:.2f} as {}, which was told): are "
       "images exchanged?",
-      other, f.best, f.told, channel);
+      other, best, told, channel);
 }
 
-std::optional<double> correlation_at(const PlacedImage& image, const PlacedImage& other,
-                                     const Affine& map) {
+double correlation_at(const PlacedImage& image, const PlacedImage& other, const Affine& map) {
   double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
   for (int y = 0; y < image.values.height(); ++y)
     for (int x = 0; x < image.values.width(); ++x) {
@@ -73,9 +82,9 @@ std::optional<double> correlation_at(const PlacedImage& image, const PlacedImage
       if (!std::isfinite(w)) continue;
       ++n, a += v, b += w, aa += v * v, bb += w * w, ab += v * w;
     }
-  if (n < static_cast<double>(least_pixels)) return std::nullopt;
+  if (n < static_cast<double>(least_pixels)) return 0;
   const double va = aa - a * a / n, vb = bb - b * b / n;
-  return va > 0 && vb > 0 ? std::optional((ab - a * b / n) / std::sqrt(va * vb)) : std::nullopt;
+  return va > 0 && vb > 0 ? (ab - a * b / n) / std::sqrt(va * vb) : 0;
 }
 
 }  // namespace surf::workflow

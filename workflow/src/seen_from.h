@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <optional>
+#include <functional>
 #include <string>
 
 #include "surf/core/placed_image.h"
@@ -14,25 +14,16 @@ namespace surf::workflow {
 ModelImages seen_from(const ImageModel& model, const HeightField& field, int quarters,
                       const ModelOptions& options);
 
-/// How an image of a detector at a side agrees with what it should show, and with what it would
-/// show elsewhere.
-struct Facing {
-  explicit Facing(double correlation) : told(correlation), best(correlation) {}
-  void add(double correlation, int at_quarters) {
-    if (correlation > best) best = correlation, quarters = at_quarters;
-  }
+/// Whether a correlation is larger than another by more than chance and the model make of it.
+bool clearly_larger(double correlation, double than);
 
-  double told;       ///< correlation with the detector where it is said to be
-  double best;       ///< the largest anywhere
-  int quarters = 0;  ///< where that is
-};
+/// Why an image is not of the detector that was told, by how it agrees with what that would show
+/// from each of four quarters (`seen_from`); empty: it is. `channel`: the detector's name.
+std::string facing_doubt(const std::string& channel,
+                         const std::function<double(int quarters)>& correlation_from);
 
-/// Why the image is not of the detector that was told; empty: it is. `channel`: its name.
-std::string doubt_of(const Facing& facing, const std::string& channel);
-
-/// The correlation of an image with another one that its places are mapped into; nothing where too
-/// little overlaps.
-std::optional<double> correlation_at(const PlacedImage& image, const PlacedImage& other,
-                                     const Affine& map);
+/// The correlation of an image with another one that its places are mapped into; 0 where too little
+/// overlaps.
+double correlation_at(const PlacedImage& image, const PlacedImage& other, const Affine& map);
 
 }  // namespace surf::workflow

@@ -20,7 +20,6 @@ namespace {
 
 constexpr double least_correlation = 0.3;  // of a view with what the surface looks like from there
 constexpr double as_good = 0.02;           // correlations that differ by less are alike
-constexpr double clearly_other = 0.1;      // of Fisher's transform of correlations, as in seen_from
 
 std::string count_of(std::size_t views) {
   return views == 1 ? "1 further SEM image" : fmt::format("{} further SEM images", views);
@@ -67,9 +66,7 @@ std::string doubt_of(const PreparedView& view) {
         "it has nothing in common with what the surface looks like from there (correlation "
         "{:.2f}): is it of the same place, and are tilt and azimuth right?",
         view.correlation);
-  // Fisher's transform: differences of correlations near 1 count for more.
-  if (std::atanh(std::min(view.other_side, 0.9999)) >
-      std::atanh(std::min(view.correlation, 0.9999)) + clearly_other)
+  if (clearly_larger(view.other_side, view.correlation))
     return fmt::format(
         "it looks as a beam sees the surface that is tilted to the other side (correlation {:.2f}, "
         "and {:.2f} as told): is `beam.azimuth` off by 180 degrees?",
@@ -193,16 +190,11 @@ std::vector<SemView> prepare_views(const ReconstructJob& job, ReconstructSummary
     if (surface && found.model.sided) {
       // All at one place: of a scan, or where the image suits best.
       const Affine map = same_frame ? Affine{} : Affine{1, 0, shift.x_nm, 0, 1, shift.y_nm};
-      const auto from = [&](int quarters) {
+      std::string doubt = facing_doubt(model.channels().front(), [&](int quarters) {
         return correlation_at(
-                   image, predicted(*surface, image, view.pose, model, gains, threads, quarters),
-                   map)
-            .value_or(0);
-      };
-      Facing facing(from(0));
-      for (int quarters = 1; quarters < 4; ++quarters) facing.add(from(quarters), quarters);
-      if (std::string doubt = doubt_of(facing, model.channels().front()); !doubt.empty())
-        found.doubt = std::move(doubt);
+            image, predicted(*surface, image, view.pose, model, gains, threads, quarters), map);
+      });
+      if (!doubt.empty()) found.doubt = std::move(doubt);
     }
     view.pose.to_plane = {1, 0, shift.x_nm, 0, 1, shift.y_nm};
     view.same_scan = !same_signal && same_frame && shift.x_nm == 0 && shift.y_nm == 0 &&

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 
@@ -335,25 +336,26 @@ TrainingImage taught_by(const ImageModel& teacher, std::uint64_t seed, double no
   return image;
 }
 
-/// Slopes as their neighbours see them: smooth, positive, not a network.
-class Teacher final : public ImageModel {
+/// Signals of the heights around a pixel, mirrored at the border.
+class Taught final : public ImageModel {
  public:
+  using Heights = std::function<double(int x, int y)>;
+  using Signals = std::function<std::vector<double>(const Heights& z, int x, int y)>;
+
+  Taught(std::vector<std::string> names, Signals signals)
+      : names_(std::move(names)), signals_(std::move(signals)) {}
   const std::vector<std::string>& channels() const override { return names_; }
   const ModelScope& scope() const override { return scope_; }
   ModelImages predict(const HeightField& field, const ModelOptions&) const override {
     const int w = field.z_nm.width(), h = field.z_nm.height();
-    ModelImages images(2, Grid<double>(w, h));
+    const Heights z = [&](int i, int j) {
+      return field.z_nm(std::abs(std::min(i, 2 * w - 2 - i)), std::abs(std::min(j, 2 * h - 2 - j)));
+    };
+    ModelImages images(names_.size(), Grid<double>(w, h));
     for (int y = 0; y < h; ++y)
       for (int x = 0; x < w; ++x) {
-        const auto z = [&](int i, int j) {
-          return field.z_nm(std::abs(std::min(i, 2 * w - 2 - i)),
-                            std::abs(std::min(j, 2 * h - 2 - j)));
-        };
-        const double sx = (z(x + 1, y) - z(x - 1, y)) / 4, sy = (z(x, y + 1) - z(x, y - 1)) / 4;
-        const double bend =
-            (z(x + 2, y) + z(x - 2, y) + z(x, y + 2) + z(x, y - 2) - 4 * z(x, y)) / 16;
-        images[0](x, y) = std::sqrt(1 + sx * sx + sy * sy) / (1 + std::exp(bend));
-        images[1](x, y) = 0.2 + 0.1 * std::tanh(std::hypot(sx, sy)) - 0.05 * std::tanh(bend);
+        const std::vector<double> signals = signals_(z, x, y);
+        for (std::size_t c = 0; c < images.size(); ++c) images[c](x, y) = signals[c];
       }
     return images;
   }
@@ -362,9 +364,21 @@ class Teacher final : public ImageModel {
   }
 
  private:
-  std::vector<std::string> names_{"SE", "BSE"};
+  std::vector<std::string> names_;
+  Signals signals_;
   ModelScope scope_;
 };
+
+/// Slopes as their neighbours see them: smooth, positive, not a network.
+Taught teacher() {
+  return {{"SE", "BSE"}, [](const Taught::Heights& z, int x, int y) {
+            const double sx = (z(x + 1, y) - z(x - 1, y)) / 4, sy = (z(x, y + 1) - z(x, y - 1)) / 4;
+            const double bend =
+                (z(x + 2, y) + z(x - 2, y) + z(x, y + 2) + z(x, y - 2) - 4 * z(x, y)) / 16;
+            return std::vector{std::sqrt(1 + sx * sx + sy * sy) / (1 + std::exp(bend)),
+                               0.2 + 0.1 * std::tanh(std::hypot(sx, sy)) - 0.05 * std::tanh(bend)};
+          }};
+}
 
 FacetNetworkFitOptions quick() {
   FacetNetworkFitOptions o;
@@ -378,14 +392,14 @@ FacetNetworkFitOptions quick() {
 TEST(FitFacetNetwork, LearnsWhatALinearBankCannotAndSaysHowFarItIsOff) {
   std::vector<TrainingImage> images;
   for (std::uint64_t seed = 1; seed <= 6; ++seed)
-    images.push_back(taught_by(Teacher(), seed, 0.05));
+    images.push_back(taught_by(teacher(), seed, 0.05));
   const FacetNetworkFit fit = fit_facet_network(images, {"SE", "BSE"}, quick());
   ASSERT_EQ(fit.residuals.size(), 2U);
   EXPECT_EQ(fit.parameters.channels[1].name, "BSE");
   EXPECT_LE(fit.iterations, 150);
   EXPECT_NEAR(fit.cost, 1, 0.25);  // residuals are noise, and what the model is given to miss by
   const auto bank = fit_filter_bank(images, {"SE", "BSE"});
-  const auto held = taught_by(Teacher(), 77, 1e-6);
+  const auto held = taught_by(teacher(), 77, 1e-6);
   ModelScope scope;
   scope.pixel_nm = 2;
   const auto judged = residuals_of(*make_facet_network(scope, fit.parameters), {held});
@@ -399,34 +413,12 @@ TEST(FitFacetNetwork, LearnsWhatALinearBankCannotAndSaysHowFarItIsOff) {
 
 TEST(FitFacetNetwork, LearnsWhatADetectorAtASideSees) {
   // Lambert's law, lit from +x: a network without sides cannot tell the two flanks of a hill apart.
-  class Lambert final : public ImageModel {
-   public:
-    const std::vector<std::string>& channels() const override { return names_; }
-    const ModelScope& scope() const override { return scope_; }
-    ModelImages predict(const HeightField& field, const ModelOptions&) const override {
-      const int w = field.z_nm.width(), h = field.z_nm.height();
-      ModelImages images(1, Grid<double>(w, h));
-      for (int y = 0; y < h; ++y)
-        for (int x = 0; x < w; ++x) {
-          const double slope =
-              (field.z_nm(std::min(x + 1, w - 1), y) - field.z_nm(std::max(x - 1, 0), y)) / 4;
-          images[0](x, y) = 0.5 - 0.3 * std::tanh(slope);
-        }
-      return images;
-    }
-    std::unique_ptr<Linearization> linearize(const HeightField&,
-                                             const ModelOptions&) const override {
-      return nullptr;
-    }
-
-   private:
-    std::vector<std::string> names_{"BSE-right"};
-    ModelScope scope_;
-  };
+  const Taught lambert({"BSE-right"}, [](const Taught::Heights& z, int x, int y) {
+    return std::vector{0.5 - 0.3 * std::tanh((z(x + 1, y) - z(x - 1, y)) / 4)};
+  });
   std::vector<TrainingImage> images;
-  for (std::uint64_t seed = 1; seed <= 4; ++seed)
-    images.push_back(taught_by(Lambert(), seed, 0.05));
-  const auto held = taught_by(Lambert(), 77, 1e-6);
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) images.push_back(taught_by(lambert, seed, 0.05));
+  const auto held = taught_by(lambert, 77, 1e-6);
   ModelScope scope;
   scope.pixel_nm = 2;
   const auto off = [&](bool sided) {
@@ -442,8 +434,8 @@ TEST(FitFacetNetwork, LearnsWhatADetectorAtASideSees) {
 }
 
 TEST(FitFacetNetwork, SameNumbersOnAnyNumberOfThreads) {
-  std::vector<TrainingImage> images{taught_by(Teacher(), 1, 0.05), taught_by(Teacher(), 2, 0.05),
-                                    taught_by(Teacher(), 3, 0.05)};
+  std::vector<TrainingImage> images{taught_by(teacher(), 1, 0.05), taught_by(teacher(), 2, 0.05),
+                                    taught_by(teacher(), 3, 0.05)};
   FacetNetworkFitOptions o = quick();
   o.iterations = 12;
   o.threads = 1;
@@ -458,7 +450,7 @@ TEST(FitFacetNetwork, SameNumbersOnAnyNumberOfThreads) {
 }
 
 TEST(FitFacetNetwork, LeavesOutWhatIsNotUsedAndKeepsPixelsOfOneImage) {
-  std::vector<TrainingImage> images{taught_by(Teacher(), 1, 0.05), taught_by(Teacher(), 2, 0.05)};
+  std::vector<TrainingImage> images{taught_by(teacher(), 1, 0.05), taught_by(teacher(), 2, 0.05)};
   for (TrainingImage& image : images) {
     image.used = Mask(60, 50, 1);
     for (int x = 0; x < 60; ++x) {
@@ -475,7 +467,7 @@ TEST(FitFacetNetwork, LeavesOutWhatIsNotUsedAndKeepsPixelsOfOneImage) {
 }
 
 TEST(FitFacetNetwork, TellsHowFarItIsAndEndsWhenTold) {
-  std::vector<TrainingImage> images{taught_by(Teacher(), 1, 0.05)};
+  std::vector<TrainingImage> images{taught_by(teacher(), 1, 0.05)};
   FacetNetworkFitOptions o = quick();
   CancelToken token;
   double last = 0;
@@ -491,7 +483,7 @@ TEST(FitFacetNetwork, TellsHowFarItIsAndEndsWhenTold) {
 }
 
 TEST(FitFacetNetwork, RefusesWhatItCannotLearnFrom) {
-  std::vector<TrainingImage> images{taught_by(Teacher(), 1, 0.05)};
+  std::vector<TrainingImage> images{taught_by(teacher(), 1, 0.05)};
   EXPECT_THROW(fit_facet_network(images, {"SE"}, quick()), InvalidInput);
   const auto refuses = [&](auto&& spoil) {
     FacetNetworkFitOptions o = quick();
