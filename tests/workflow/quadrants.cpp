@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hilly_pair.h"
+#include "seen_from.h"
 #include "surf/core/error.h"
 #include "surf/sem/facet_network.h"
 #include "surf/workflow/reconstruct_job.h"
@@ -163,7 +164,9 @@ TEST_F(ReconstructionOfQuadrants, StandInTheImagesFrameHoweverTheScanIsTurned) {
   job_.pose.transform = Affine{0, -1, (h - 1) * pitch - 45, 1, 0, 60};
   job_.sem->image = image_of("BSE-top", 2);
   job_.model.signal = "BSE-top";
-  EXPECT_NE(run(job_).verdict, ReconstructionVerdict::not_registered);
+  const ReconstructSummary told = run(job_);
+  EXPECT_NE(told.verdict, ReconstructionVerdict::not_registered);
+  EXPECT_GT(correlation_at(job_.sem->image, told.pose->simulated, told.pose->sem_to_afm), 0.5);
   job_.model.signal = "BSE-right";
   const ReconstructSummary s = run(job_);
   EXPECT_EQ(s.verdict, ReconstructionVerdict::not_registered);
@@ -172,7 +175,9 @@ TEST_F(ReconstructionOfQuadrants, StandInTheImagesFrameHoweverTheScanIsTurned) {
   job_.pose.transform.reset();
   job_.pose.accept_unverified = true;
   job_.model.signal = "BSE-top";
-  const Affine map = run(job_).pose->sem_to_afm;
+  const Pose found = *run(job_).pose;
+  const Affine map = found.sem_to_afm;
+  EXPECT_GT(correlation_at(job_.sem->image, found.simulated, map), 0.5);
   EXPECT_NEAR(map.yx, 1, 0.1);
   EXPECT_NEAR(map.xy, -1, 0.1);
 }
