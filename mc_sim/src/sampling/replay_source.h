@@ -77,7 +77,7 @@ class ReplaySource {
   }
 
  private:
-  static constexpr std::int64_t worth_looking_around = 50;  // primaries of a pixel
+  static constexpr std::int64_t worth_looking_around = 8;  // primaries of a pixel
 
   struct Pixel {
     int x = 0, y = 0;
