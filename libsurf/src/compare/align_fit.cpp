@@ -98,13 +98,14 @@ class Fit {
     centre_ = before.place_nm(0.5 * (w_ - 1), 0.5 * (h_ - 1));
   }
 
-  AlignFit run(Point2 start) {
+  AlignFit run(Point2 start, const Watch& watch) {
     AlignFit out;
     out.pitch = before_.pitch();
     out.centre_nm = centre_;
     Vector at{start.x, start.y, 0, 0, 0};
     bool determined = true;
     for (int step = 0; step < most_steps; ++step) {
+      watch.check();
       take_samples(at);
       if (samples_.size() < fewest_samples) return out;
       set_deviations(std::pow(0.5, step));
@@ -407,9 +408,9 @@ void take_plane_off(Grid<double>& values, const Mask& valid) {
     for (int x = 0; x < w; ++x) values(x, y) -= mz + a * (x - mx) + b * (y - my);
 }
 
-AlignFit fit_alignment(const HeightField& before, const HeightField& after, Point2 start,
-                       bool held) {
-  return Fit(before, after, held).run(start);
+AlignFit fit_alignment(const HeightField& before, const HeightField& after, Point2 start, bool held,
+                       const Watch& watch) {
+  return Fit(before, after, held).run(start, watch);
 }
 
 }  // namespace surf

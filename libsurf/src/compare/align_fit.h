@@ -5,6 +5,7 @@
 
 #include "surf/core/affine.h"
 #include "surf/core/height_field.h"
+#include "surf/core/progress.h"
 
 namespace surf {
 
@@ -24,12 +25,12 @@ struct AlignFit {
   std::array<double, 25> covariance{};
   double correlation = 0, overlap = 0;
   double place_error_px = 0;  ///< robust deviation of walls from their places
-  double independent = 0;  ///< samples that are worth as much without correlation
+  double independent = 0;     ///< samples that are worth as much without correlation
   Pitch pitch;
 };
 
-/// Fits shift (unless `held`), lift and tilt of smoothed fields.
-AlignFit fit_alignment(const HeightField& before, const HeightField& after, Point2 start,
-                       bool held);
+/// Fits shift (unless `held`), lift and tilt of smoothed fields. Throws Interrupted.
+AlignFit fit_alignment(const HeightField& before, const HeightField& after, Point2 start, bool held,
+                       const Watch& watch);
 
 }  // namespace surf

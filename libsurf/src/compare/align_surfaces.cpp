@@ -22,6 +22,7 @@ constexpr double same_pitch = 1e-3;
 constexpr int most_starts = 4;
 // A second shift rivals the best one if the data prefer it by fewer e-foldings of likelihood.
 constexpr double rival_e_foldings = 6;
+constexpr double most_place_error_px = 1.5;
 
 void check(const HeightField& before, const HeightField& after, const AlignOptions& o) {
   validate(before, "surface before"), validate(after, "surface after");
@@ -81,6 +82,8 @@ std::vector<Point2> starts_of(const HeightField& before, const HeightField& afte
                               const AlignOptions& o) {
   std::vector<Point2> out;
   constexpr int searched_peaks = 64;
+  constexpr double weak = 0.6;  // a start that correlates less, beside the first one, is no rival
+  double first = 0;
   for (const ImageShift& s :
        find_shifts(searched(before, before.pitch()), searched(after, before.pitch()),
                    searched_peaks, o.least_overlap)) {
@@ -88,6 +91,8 @@ std::vector<Point2> starts_of(const HeightField& before, const HeightField& afte
     if (std::abs(s.x_nm) > o.largest_shift_nm + slack_x ||
         std::abs(s.y_nm) > o.largest_shift_nm + slack_y)
       continue;
+    if (out.empty()) first = s.correlation;
+    if (s.correlation < weak * first) continue;
     out.push_back({s.x_nm, s.y_nm});
     if (int(out.size()) == most_starts) break;
   }
@@ -109,6 +114,15 @@ void judge(SurfaceAlignment& out, const AlignFit& best, const std::vector<AlignF
         "place? Where nothing stands out of the noise, or the places that the files state are "
         "right, say `compare.registered`",
         out.correlation);
+    return;
+  }
+  // Chance lays some walls on others; those of one specimen all lie on their own.
+  if (out.place_error_px > most_place_error_px) {
+    out.verdict = AlignmentVerdict::unrelated;
+    out.reason = fmt::format(
+        "where the surfaces agree best (correlation {:.2f}), most walls lie beside each other, "
+        "typically by {:.1f} samples. Are they of one place? If so, say `compare.registered`",
+        out.correlation, out.place_error_px);
     return;
   }
   out.verdict = AlignmentVerdict::ambiguous;
@@ -148,11 +162,10 @@ SurfaceAlignment align_surfaces(const HeightField& before, const HeightField& af
                     moving = smoothed(after, reach_x, reach_y);
   o.watch.report(0, 1);
   std::vector<AlignFit> fits;
-  if (o.held) fits.push_back(fit_alignment(resting, moving, {0, 0}, true));
+  if (o.held) fits.push_back(fit_alignment(resting, moving, {0, 0}, true, o.watch));
   else
     for (const Point2 start : starts_of(resting, moving, o)) {
-      o.watch.check();
-      fits.push_back(fit_alignment(resting, moving, start, false));
+      fits.push_back(fit_alignment(resting, moving, start, false, o.watch));
     }
   const AlignFit& best = *std::ranges::max_element(
       fits, {}, [](const AlignFit& f) { return f.usable ? f.correlation : -2; });

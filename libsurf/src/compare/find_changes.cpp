@@ -54,16 +54,16 @@ void check(const MeasuredDifference& m, const ChangeOptions& o) {
     throw UsageError("`compare.false_alarms`", fmt::format("{} is out of range", o.false_alarms),
                      "Give a share from 0.1 % to 50 %");
   if (o.smallest_px < 1)
-    throw UsageError("`compare.smallest`", fmt::format("{} is out of range", o.smallest_px),
+    throw UsageError("`compare.smallest_window`", fmt::format("{} is out of range", o.smallest_px),
                      "Give 1 or more samples");
   if (o.largest_nm && !(std::isfinite(*o.largest_nm) && *o.largest_nm > 0))
-    throw UsageError("`compare.largest`", fmt::format("{} is out of range", *o.largest_nm),
+    throw UsageError("`compare.largest_window`", fmt::format("{} is out of range", *o.largest_nm),
                      "Give a length above 0");
   if (o.simulations < 0)
     throw UsageError("`compare.simulations`", fmt::format("{} is out of range", o.simulations),
                      "Give 0 or more");
   if (!(o.least_spread > 0 && o.least_spread <= 1))
-    throw UsageError("`compare.least_spread`", fmt::format("{} is out of range", o.least_spread),
+    throw UsageError("least spread", fmt::format("{} is out of range", o.least_spread),
                      "Give a number above 0, up to 1");
 }
 
@@ -239,19 +239,36 @@ Grid<double> take_off(Grid<double>& left, const WindowScores& windows, double th
   return score;
 }
 
-/// Unmarks samples of windows that are clearly nearer to no change than to what was taken off.
+/// Unmarks samples of windows that are nearer to no change than to what was taken off, by means
+/// over the smallest squares that can tell.
 void trim(Grid<double>& score, Grid<double>& left, const Grid<double>& difference,
-          const Grid<double>& deviation) {
+          const Grid<double>& deviation, const DifferenceErrors& errors) {
   constexpr double sigmas = 2;
-  for (std::size_t i = 0; i < score.size(); ++i) {
-    double& s = score.data()[i];
-    if (s == 0) continue;
-    const double d = difference.data()[i], half = 0.5 * (d - left.data()[i]);
-    const double short_of = s > 0 ? half - d : d - half;
-    if (half * s > 0 && short_of < sigmas * deviation.data()[i]) continue;
-    s = 0;
-    left.data()[i] = d;
-  }
+  constexpr int largest = 9;
+  const int w = score.width(), h = score.height();
+  BoxSums sums(w, h), samples(w, h);
+  sums.fill([&](std::size_t i) { return difference.data()[i]; });
+  samples.fill([&](std::size_t i) { return double(errors.valid.data()[i]); });
+  std::vector<double> inflation;
+  for (int size = 1; size <= largest; size += 2)
+    inflation.push_back(errors.correlation.inflation(size));
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x) {
+      if (score(x, y) == 0) continue;
+      const double sign = score(x, y) > 0 ? 1 : -1;
+      const double half = 0.5 * sign * (difference(x, y) - left(x, y));
+      for (int size = 1; size <= largest; size += 2) {
+        const double error = deviation(x, y) * std::sqrt(inflation[std::size_t(size / 2)]) / size;
+        if (half > 0 && half < sigmas * error) continue;
+        const int x0 = std::max(0, x - size / 2), x1 = std::min(w, x + size / 2 + 1),
+                  y0 = std::max(0, y - size / 2), y1 = std::min(h, y + size / 2 + 1);
+        if (half <= 0 || sign * sums.within(x0, y0, x1, y1) < half * samples.within(x0, y0, x1, y1))
+          score(x, y) = 0;
+        break;
+      }
+    }
+  for (std::size_t i = 0; i < score.size(); ++i)
+    if (score.data()[i] == 0) left.data()[i] = difference.data()[i];
 }
 
 }  // namespace
@@ -289,7 +306,7 @@ Changes find_changes(const MeasuredDifference& m, const ChangeOptions& o) {
   const Grid<double> difference = left;
   out.deviation = errors.total();
   Grid<double> score = take_off(left, windows, out.threshold, errors.valid, o.watch);
-  trim(score, left, difference, out.deviation);
+  trim(score, left, difference, out.deviation, errors);
   const Grid<double> rest = windows.centred(left);
   out.probability = Grid<double>(w, h);
   for (std::size_t i = 0; i < rest.size(); ++i)

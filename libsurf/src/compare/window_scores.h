@@ -36,10 +36,12 @@ class BoxSums {
       }
     }
   }
-  /// Over [x, x + size) x [y, y + size).
-  double square(int x, int y, int size) const {
-    return sums_(x + size, y + size) - sums_(x, y + size) - sums_(x + size, y) + sums_(x, y);
+  /// Over [x0, x1) x [y0, y1).
+  double within(int x0, int y0, int x1, int y1) const {
+    return sums_(x1, y1) - sums_(x0, y1) - sums_(x1, y0) + sums_(x0, y0);
   }
+  /// Over [x, x + size) x [y, y + size).
+  double square(int x, int y, int size) const { return within(x, y, x + size, y + size); }
 
  private:
   Grid<double> sums_;

@@ -36,8 +36,8 @@ double error_of(double c) { return std::sqrt(c); }
 TEST(AlignSurfaces, FindsFractionsOfSamplesWithoutBias) {
   double sum = 0, squares = 0, count = 0;
   int seed = 0;
-  for (const double x_nm : {0.5, 1.0, 1.5, -3.0, 2.5, -0.7})
-    for (int again = 0; again < 3; ++again) {
+  for (const double x_nm : {0.5, 1.0, -3.0, 2.5, -0.7})
+    for (int again = 0; again < 2; ++again) {
       const ChangingSurface surface(std::uint64_t(++seed), 192, WallShape::rounded);
       const SurfaceAlignment a =
           align_surfaces(measured(surface, first_scan(std::uint64_t(seed))),
@@ -95,18 +95,21 @@ TEST(AlignSurfaces, OtherPitchesAndHolesAreTaken) {
   for (const double c : a.covariance) EXPECT_TRUE(std::isfinite(c));
 }
 
-TEST(AlignSurfaces, OtherSpecimensGetAVerdict) {
+int related_of(std::uint64_t from, std::uint64_t pairs) {
   int related = 0;
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+  for (std::uint64_t seed = from; seed < from + pairs; ++seed) {
     const ChangingSurface one(seed, 192, WallShape::rounded),
         other(seed + 500, 192, WallShape::rounded);
     const SurfaceAlignment a =
         align_surfaces(measured(one, first_scan(seed)), measured(other, second_scan(seed, 1, 1)));
     related += a.usable();
-    if (!a.usable()) EXPECT_FALSE(a.reason.empty());
+    EXPECT_EQ(a.reason.empty(), a.usable());
   }
-  EXPECT_EQ(related, 0);
+  return related;
 }
+
+TEST(AlignSurfaces, OtherSpecimensGetAVerdict) { EXPECT_EQ(related_of(1, 5), 0); }
+TEST(AlignSurfacesOfMany, OtherSpecimensGetAVerdict) { EXPECT_EQ(related_of(101, 60), 0); }
 
 TEST(AlignSurfaces, SlidingAndRepeatingSurfacesAreAmbiguous) {
   HeightField lines = measured(ChangingSurface(8, 192, WallShape::ramp, 3, 0), first_scan(8));

@@ -51,7 +51,7 @@ TEST(SurfaceDifference, OfWholeSamplesIsExact) {
     EXPECT_NEAR(d.interpolation_nm.data()[i], 0, 1e-6);
   }
   EXPECT_NEAR(d.averaged_share, 1, 1e-9);
-  EXPECT_EQ(d.valid(95, 5), 0);  // `after` ends before
+  EXPECT_EQ(d.valid(0, 5), 0);  // `after` begins behind
 }
 
 TEST(SurfaceDifference, KnowsWhatAveragingDoesToNoise) {

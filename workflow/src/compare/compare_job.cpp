@@ -23,9 +23,7 @@ constexpr double largest_spread = 5;
 constexpr double told_spread = 1.1;
 
 void check(const CompareJob& job) {
-  CompareJob parameters;
-  parameters.parameters = job.parameters;
-  check_parameters(parameters.parameters);
+  check_parameters(job.parameters);
   std::error_code ignored;
   if (std::filesystem::exists(job.folder, ignored) &&
       !std::filesystem::is_directory(job.folder, ignored))
