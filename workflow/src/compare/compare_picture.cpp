@@ -18,7 +18,7 @@ using io::PlotPanel;
 constexpr double blank = std::numeric_limits<double>::quiet_NaN();
 constexpr double deviations_shown = 6;
 constexpr std::size_t most_numbers = 12;  // of places, written into the picture
-constexpr int up = 1, down = 0;           // colours of outlines: orange and blue
+constexpr int up = 4, down = 5;           // colours of outlines: orange and light blue
 
 /// Lengths of the axes: um for wide views.
 struct Scale {
@@ -149,15 +149,14 @@ io::Plot compare_picture(const CompareJob& job, const CompareSummary& s) {
   PlotPanel difference = picture("after less before, over its standard deviation", at, ratio, valid,
                                  PlotColors::difference, "standard deviations", scale);
   difference.image->range = io::PlotAxis::Range{-deviations_shown, deviations_shown};
-  PlotPanel probability =
-      picture("probability of a change", at, s.changes.probability, valid, PlotColors::heights,
-              fmt::format("1 - p, for the whole view; places have more than {:g} %",
-                          100 * (1 - job.parameters.false_alarms)),
-              scale);
+  PlotPanel probability = picture(fmt::format("probability of a change, outlined above {:g} %",
+                                              100 * (1 - job.parameters.false_alarms)),
+                                  at, s.changes.probability, valid, PlotColors::heights,
+                                  "1 − p, for the whole view", scale);
   probability.image->range = io::PlotAxis::Range{0, 1};
-  outline_places(after, s, scale, true);
-  outline_places(difference, s, scale, false);
-  outline_places(probability, s, scale, true);
+  outline_places(after, s, scale, false);
+  outline_places(difference, s, scale, true);
+  outline_places(probability, s, scale, false);
   io::Plot plot;
   plot.title = title_of(job, s);
   plot.panels = {std::move(before), std::move(after), std::move(difference),
