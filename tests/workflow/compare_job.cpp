@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "changing_surface.h"
@@ -91,7 +92,6 @@ TEST_F(CompareJobTest, WritesTheSameBytesWithAnyThreads) {
 
 TEST_F(CompareJobTest, OtherSpecimensGetAVerdictAndNoSurface) {
   const ChangingSurface other(77, 144, WallShape::rounded);
-  io::write_text(folder_.path() / "stale", "");
   const CompareSummary s = run(job(measured(was_, scan(1)), measured(other, scan(2))));
   EXPECT_EQ(s.verdict, CompareVerdict::not_registered);
   EXPECT_FALSE(s.reasons.empty());
@@ -135,7 +135,7 @@ TEST_F(CompareJobTest, DeviationsOfFilesCountAndTooSmallOnesAreWidened) {
   const CompareSummary s = run(told, heard.reporter());
   EXPECT_GT(s.changes.spread, 1.3);
   EXPECT_THAT(heard.warnings, testing::ElementsAre(HasSubstr("deviations are widened")));
-  EXPECT_TRUE(s.changes.places.empty());
+  EXPECT_GE(s.changes.deviation(10, 10), 0.99 * s.changes.spread * 0.15 * std::sqrt(2.0));
 }
 
 TEST_F(CompareJobTest, AMeshIsWhatIsExpected) {

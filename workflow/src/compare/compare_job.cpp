@@ -13,6 +13,7 @@
 #include "surf/io/height_field_file.h"
 #include "surf/io/mesh_file.h"
 #include "surf/io/plot.h"
+#include "surf/io/sem_file.h"
 
 namespace surf::workflow {
 namespace {
@@ -101,6 +102,7 @@ ComparedSurface read_compared_surface(const std::filesystem::path& file,
                                       const io::HeightReadOptions& reading,
                                       const io::MeshUnit& unit, std::vector<std::string>& notes) {
   if (reading.channel.empty() && io::has_mesh_content(file)) return io::read_mesh(file, unit);
+  if (!reading.z_unit_nm) io::refuse_as_heights(file);
   const io::HeightFile content(file);
   io::HeightFieldFile read = content.read(reading);
   for (const std::string& note : read.notes)
