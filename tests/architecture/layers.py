@@ -18,7 +18,7 @@ MC = {f"mc/{room}" for room in ROOMS} | {"mc"}
 # The rooms of libsurf's models of SEM images, likewise.
 SEM_ROOMS = ["model", "minimise", "facet", "network", "baselines", "noise", "calibration", "guided", "training"]
 SEM = {f"sem/{room}" for room in SEM_ROOMS} | {"sem"}
-SURF = {"core", "mesh", "afm", "registration", "profile", "reconstruction"} | SEM
+SURF = {"core", "mesh", "afm", "registration", "compare", "profile", "reconstruction"} | SEM
 
 
 def rooms_of_mc():
@@ -35,7 +35,8 @@ def parts_of_libsurf():
                              {"core", "mesh", "afm", "sem"} | {f"sem/{before}" for before in SEM_ROOMS[:i]})
              for i, room in enumerate(SEM_ROOMS)}
     return {"core": (places("core"), set()), "mesh": (places("mesh"), {"core"}), "afm": (places("afm"), {"core"}),
-            "registration": (places("registration"), {"core"}), "profile": (places("profile"), {"core", "mesh"}), **rooms,
+            "registration": (places("registration"), {"core"}), "compare": (places("compare"), {"core", "registration"}),
+            "profile": (places("profile"), {"core", "mesh"}), **rooms,
             "sem": (places("sem"), {"core", "mesh", "afm"} | SEM),
             "reconstruction": (places("reconstruction"), {"core", "afm"} | SEM)}
 
@@ -57,7 +58,7 @@ PARTS = {
 OWNERS = [("surf/io/sim/", "io_sim"), ("surf/io/model/", "io_models"), ("surf/io/", "io"),
           *((f"surf/mc/{room}/", f"mc/{room}") for room in ROOMS), ("surf/mc/tables/", "mc_tables"), ("surf/mc/", "mc"),
           ("surf/workflow/", "workflow"),
-          *((f"surf/{part}/", part) for part in ["core", "mesh", "afm", "sem", "registration", "profile", "reconstruction"])]
+          *((f"surf/{part}/", part) for part in ["core", "mesh", "afm", "sem", "registration", "compare", "profile", "reconstruction"])]
 # Third-party headers <...> and the files that may include them. First match; public headers never.
 THIRD_PARTY = [
     ("embree*/*", ["mc_sim/src/geometry/embree_scene.cpp"]),
@@ -71,7 +72,7 @@ THIRD_PARTY = [
     # In correlation.cpp only what needs no library.
     ("ceres/*", ["libsurf/src/sem/minimise/ceres_module.cpp", "libsurf/src/registration/correlation.cpp"]),
     ("cholmod.h", ["libsurf/src/reconstruction/cholmod_module.cpp"]),
-    ("fftw3.h", ["libsurf/src/registration/shift_search.cpp"]),
+    ("fftw3.h", ["libsurf/src/compare/noise_fields.cpp", "libsurf/src/registration/shift_search.cpp"]),
     ("hwy/*", ["libsurf/src/core/each_target.h"]),
     ("nlopt.h", ["libsurf/src/profile/edge_roughness.cpp", "libsurf/src/reconstruction/tip_search.cpp", "libsurf/src/registration/mutual_information.cpp"]),
     ("OpenImageIO/*", ["io/src/raster/raster_*"]),

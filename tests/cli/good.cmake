@@ -267,6 +267,11 @@ semsurf_cli_test(certainty.own_noise ARGS certainty steps.txt --tip tip.txt -o m
   STDERR "a noise of .* is taken from neighbouring pixels" WRITES map.vti)
 semsurf_cli_test(certainty.unexplained ARGS certainty steps.txt --tip tip.txt --height-noise 0 --neighbourhood 1 -o map.tif
   STDERR "cannot have been made by this tip" WRITES map.tif)
+semsurf_cli_test(compare.same ARGS compare noisy.gsf noisy.gsf --registered --simulations 40 --no-picture -o change
+  STDOUT "changes +none beyond the errors" WRITES change/report.json change/change.vti change/places.csv
+  INFO change/change.vti "option.compare.registered +on" "command +compare")
+semsurf_cli_test(compare.others EXIT 4 ARGS compare noisy.gsf block.gsf -o change
+  STDERR "the surfaces (agree nowhere|fit as well|fit nearly)|they fit nearly" WRITES change/report.json)
 # AFM: the tip itself.
 semsurf_cli_test(help.tip ARGS tip --help STDOUT "--answer" "--shape SHAPE" "--also FILE" "Without --threshold")
 semsurf_cli_test(tip.ball ARGS tip --shape ball:5nm --tip-size 15 -o tip.gsf STDOUT "15 x 15 samples" "down to -5.00 nm" WRITES tip.gsf)

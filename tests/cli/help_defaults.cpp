@@ -146,7 +146,7 @@ std::vector<Default> defaults() {
       {{"tip"},
        "--sweep",
        fmt::format("0.3 to 8 standard deviations of the noise, {}", TipSweepOptions{}.thresholds)},
-      {chains, "--spot", workflow::ModelRequest{}.spot_nm},
+      {{"register", "reconstruct", "compare"}, "--spot", workflow::ModelRequest{}.spot_nm},
   };
 }
 
@@ -154,7 +154,7 @@ std::vector<Default> defaults() {
 /// no defaults at all.
 std::vector<Default> others() {
   const std::vector<std::string> scans{"level", "clean", "noise scan", "erode", "dilate",
-                                       "open",  "close", "certainty",  "tip"};
+                                       "open",  "close", "certainty",  "tip",   "compare"};
   const std::vector<std::string> chains{"register", "reconstruct"},
       libraries{"library build", "library plot"};
   return {
@@ -163,6 +163,7 @@ std::vector<Default> others() {
       {{"mesh", "view", "predict", "simulate", "sweep", "train", "chart"},
        "--height-pitch",
        "1 nm"},
+      {{"compare"}, "--largest-window", "a quarter of the view, at most 64 samples"},
       {{"simulate"}, "--layout", "auto: tiles above 64 million pixels"},
       {{"chart"}, "--draws", "10, quickly 3"},
       {{"noise sem"}, "--block", "16, 12 or 8"},
@@ -222,8 +223,8 @@ TEST(HelpDefaults, EveryCommandIsLookedAt) {
       commands_of({}),
       testing::ElementsAre("simulate", "sweep", "train", "predict", "estimate", "profile", "level",
                            "clean", "noise", "tip", "erode", "dilate", "open", "close", "certainty",
-                           "sample", "register", "calibrate", "reconstruct", "info", "view", "mesh",
-                           "materials", "library", "chart", "completion"));
+                           "sample", "register", "calibrate", "reconstruct", "compare", "info",
+                           "view", "mesh", "materials", "library", "chart", "completion"));
   EXPECT_THAT(commands_of({"sweep"}), testing::ElementsAre("join"));
   EXPECT_THAT(commands_of({"library"}), testing::ElementsAre("list", "build", "plot", "remove"));
   const auto options = options_of({"reconstruct"});
