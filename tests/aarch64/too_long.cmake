@@ -12,6 +12,7 @@ set(SEMSURF_TOO_LONG_EMULATED
   "EstimateSemNoise\\..*"
   "GuidedEstimate\\..*"
   "MakeSelfAffine\\..*"
+  "Objective\\.GradientHoldsWithViews"
   "Reconstruct\\..*"
   "RegisterImages\\..*"
   "RoundTipSearch\\.BoundsATipOnPillarsFromOutside"
