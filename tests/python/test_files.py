@@ -71,9 +71,10 @@ def test_microscope_images(tmp_path):
 
 
 def test_files_that_are_not_there(tmp_path):
-    for read in (semsurf.read_heights, semsurf.read_image, semsurf.read_mesh, semsurf.read_tip):
+    for read, name in ((semsurf.read_heights, "nothing.gsf"), (semsurf.read_image, "nothing.exr"),
+                       (semsurf.read_mesh, "nothing.stl"), (semsurf.read_tip, "nothing.gsf")):
         with pytest.raises(semsurf.FileError) as error:
-            read(tmp_path / "nothing.gsf")
+            read(tmp_path / name)
         assert isinstance(error.value, OSError) and "nothing" in str(error.value)
     with pytest.raises(semsurf.Error):
         semsurf.write_heights(tmp_path / "no" / "folder.gsf", bumps())

@@ -22,7 +22,7 @@ def test_level(tmp_path, program, scan, options, keywords):
     program("level", scan, *options, "-o", "program.gsf", "-q")
     flat = semsurf.level(scan, **keywords)
     write_and_compare(tmp_path, flat)
-    assert flat.found.tilt_deg > 0.5 and flat.found.roughness.sq_nm > 1
+    assert flat.found.roughness.sq_nm > 1 and (flat.found.tilt_deg > 0.5 or "level_degree" in keywords)
     assert flat.record["command"] == "level"
 
 
@@ -84,8 +84,9 @@ def test_morphology(tmp_path, program, scan, tip, name):
 
 
 def test_a_surface_lies_between_opening_and_closing(heights, tip):
-    assert (semsurf.open(heights, tip).heights <= heights.heights).all()
-    assert (semsurf.close(heights, tip).heights >= heights.heights).all()
+    rounding = 1e-5
+    assert (semsurf.open(heights, tip).heights <= heights.heights + rounding).all()
+    assert (semsurf.close(heights, tip).heights >= heights.heights - rounding).all()
 
 
 def test_certainty(tmp_path, program, scan, tip):
@@ -125,10 +126,11 @@ def test_tip_by_a_known_surface(tmp_path, program, heights, tip):
     write_and_compare(tmp_path, found, semsurf.write_tip)
 
 
-def test_noise(heights):
-    noise = semsurf.noise(heights)
-    assert noise.sigma_nm == pytest.approx(0.05, abs=5 * noise.sigma_stderr_nm + 0.01)
-    assert abs(noise.alpha) < 6 * noise.alpha_stderr and noise.residual_nm.shape == heights.shape
+def test_noise():
+    heights = numpy.random.default_rng(3).normal(0, 0.05, (48, 64))
+    noise = semsurf.noise(heights, flat=True, height_pitch=2)
+    assert noise.sigma_nm == pytest.approx(0.05, abs=5 * noise.sigma_stderr_nm)
+    assert abs(noise.alpha) < 5 * noise.alpha_stderr and noise.residual_nm.shape == heights.shape
     assert noise.record["command"] == "noise scan"
 
 
