@@ -163,7 +163,8 @@ py::object found_of(const workflow::TrainJob& job, const workflow::TrainSummary&
   d["kind"] = io::kind_of(s.model);
   d["scope"] = found_of(s.model.scope);
   py::list channels;
-  for (const std::string& name : make_model(s.model)->channels()) channels.append(name);
+  const auto model = make_model(s.model);  // outlives its names
+  for (const std::string& name : model->channels()) channels.append(name);
   d["channels"] = channels;
   d["residuals"] = found_of(s.model.record.residuals);
   d["held_out_residuals"] = found_of(s.model.record.held_out_residuals);

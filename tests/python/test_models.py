@@ -47,9 +47,9 @@ def test_train_from_images(tmp_path, program):
     semsurf.write_heights(tmp_path / "a.txt", surface)
     image = semsurf.predict(surface, model=str(semsurf_model()))
     semsurf.write_image(tmp_path / "a.exr", image)
-    settings = ["--material", "Si", "--energy", "1keV", "--pixel-size", "3nm", "--kind", "filter-bank", "--scales", "1,2"]
+    settings = ["--material", "Si", "--energy", "1keV", "--pixel-size", "3nm", "--kind", "filter-bank", "--scales", "5,7"]
     program("train", "a.txt", "--images", "a.exr", *settings, "-o", "program.json", "-q")
-    keywords = dict(material="Si", energy="1keV", pixel_size="3nm", kind="filter-bank", scales=(1, 2))
+    keywords = dict(material="Si", energy="1keV", pixel_size="3nm", kind="filter-bank", scales=(5, 7))
     trained = semsurf.train(tmp_path / "a.txt", images=tmp_path / "a.exr", output=tmp_path / "python.json", **keywords)
     assert trained.kind == "filter-bank" and trained.channels == ["SE", "BSE"] and trained.residuals.SE.rms >= 0
     a, b = (json.loads((tmp_path / name).read_text()) for name in ("program.json", "python.json"))
