@@ -51,7 +51,7 @@ def test_train_from_images(tmp_path, program):
     program("train", "a.txt", "--images", "a.exr", *settings, "-o", "program.json", "-q")
     keywords = dict(material="Si", energy="1keV", pixel_size="3nm", kind="filter-bank", scales=(5, 7))
     trained = semsurf.train(tmp_path / "a.txt", images=tmp_path / "a.exr", output=tmp_path / "python.json", **keywords)
-    assert trained.kind == "filter-bank" and trained.channels == ["SE", "BSE"] and trained.residuals.SE.rms >= 0
+    assert trained.kind == "filter bank" and trained.channels == ["SE", "BSE"] and trained.residuals.SE.rms >= 0
     a, b = (json.loads((tmp_path / name).read_text()) for name in ("program.json", "python.json"))
     assert without_paths(a) == without_paths(b)
     again = semsurf.train(surface, images=image, output=tmp_path / "memory.json", **keywords)
