@@ -23,6 +23,7 @@ packages=(
   pkg-config libcairo2-dev fonts-dejavu-core                      # pictures of electron tracks
   paraview-dev python3-paraview mpi-default-dev python3-dev       # VTK: ParaView's own
   python3-matplotlib                                              # charts
+  pybind11-dev python3-numpy python3-pytest                       # the Python package and its tests
   libgtest-dev libgmock-dev                                       # tests
 )
 # The pages of semsurf view. Debian's npm conflicts with other packages of Node.js: any that is there will do.

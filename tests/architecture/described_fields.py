@@ -10,7 +10,7 @@ import pathlib
 import re
 import sys
 
-FOLDERS = ("libsurf", "mc_sim", "io", "workflow", "cli", "paraview_plugin")
+FOLDERS = ("libsurf", "mc_sim", "io", "workflow", "cli", "paraview_plugin", "python")
 TEXT = re.compile(r"""'(?:[^'\\\n]|\\.)'|//[^\n]*|/\*.*?\*/|R"(?P<mark>\w*)\((?P<raw>.*?)\)(?P=mark)"|"(?P<text>(?:[^"\\\n]|\\.)*)\"""", re.S)
 NAMED = re.compile(r"`([a-z_]+(?:\.[a-z_]+)+)(?:=[^`]*)?`")
 DESCRIBED = re.compile(r'"([a-z_]+(?:\.[a-z_]+)*)"')

@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 
-FOLDERS = ["libsurf", "mc_sim", "io", "workflow", "cli", "samples", "paraview_plugin", "tests", "bench"]
+FOLDERS = ["libsurf", "mc_sim", "io", "workflow", "cli", "samples", "paraview_plugin", "python", "tests", "bench"]
 SKIPPED = 77
 
 

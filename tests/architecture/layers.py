@@ -53,6 +53,7 @@ PARTS = {
     "cli": (["cli/*"], ALL),
     "samples": (["samples/*"], ALL),
     "paraview_plugin": (["paraview_plugin/*"], ALL),
+    "python": (["python/*"], ALL),
 }
 # Whose header "surf/..." is. First match.
 OWNERS = [("surf/io/sim/", "io_sim"), ("surf/io/model/", "io_models"), ("surf/io/", "io"),
@@ -90,6 +91,7 @@ THIRD_PARTY = [
     ("openssl/*", ["io/src/*"]),
     ("CLI/*", ["cli/*"]),
     ("mpi.h", ["workflow/src/mpi_team.cpp"]),
+    ("pybind11/*", ["python/*"]),
     ("Random123/*", ["libsurf/src/core/random.cpp"]),
     ("tbb/*", ["libsurf/src/core/parallel.cpp"]),
     ("oneapi/*", ["libsurf/src/core/parallel.cpp"]),
@@ -108,7 +110,7 @@ THIRD_PARTY = [
     ("termios.h", ["*"]),
     ("unistd.h", ["*"]),
 ]
-SOURCE_FOLDERS = ["libsurf", "mc_sim", "io", "workflow", "cli", "samples", "paraview_plugin"]
+SOURCE_FOLDERS = ["libsurf", "mc_sim", "io", "workflow", "cli", "samples", "paraview_plugin", "python"]
 SPDX_FOLDERS = SOURCE_FOLDERS + ["tests", "bench", "cmake", "docs"]
 SPDX_SUFFIXES = {".cpp", ".h", ".py", ".sh"}
 SPDX_LINE = "SPDX-License-Identifier: GPL-3.0-or-later"

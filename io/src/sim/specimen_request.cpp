@@ -15,6 +15,7 @@
 #include "surf/io/image_file.h"
 #include "surf/io/mesh_file.h"
 #include "surf/io/scan_parameters.h"
+#include "surf/io/sim/specimen_in_memory.h"
 
 namespace surf::io {
 namespace {
@@ -45,7 +46,23 @@ void add_mesh_bodies(const std::string& input, const SpecimenRequest& request,
   for (auto& file : mesh_input_files(input)) scene.inputs.push_back(std::move(file));
 }
 
-SceneFile from_shapes(const SpecimenRequest& request, const BodyReader& read) {
+/// Shapes in memory are called as they are named, or by what they are.
+void add_shapes_in_memory(const ShapesInMemory& shapes, const std::string& fallback,
+                          SceneFile& scene) {
+  for (const NamedMesh& body : shapes.meshes) {
+    const std::string& material = body.material.empty() ? fallback : body.material;
+    scene.specimen.bodies.push_back({body.name.empty() ? "mesh" : body.name, body.mesh,
+                                     add_material(scene, material, "`specimen.material`")});
+  }
+  if (!shapes.field) return;
+  if (scene.specimen.height_field)
+    throw UsageError("heights", "there is a height field already", "Give one at most");
+  scene.specimen.height_field = mc::HeightFieldBody{
+      "heights", *shapes.field, add_material(scene, fallback, "`specimen.material`"), Edge::mirror};
+}
+
+SceneFile from_shapes(const SpecimenRequest& request, const ShapesInMemory& shapes,
+                      const BodyReader& read) {
   SceneFile scene;
   std::vector<std::string> of_materials;
   for (const std::string& file : request.material_files) {
@@ -74,6 +91,7 @@ SceneFile from_shapes(const SpecimenRequest& request, const BodyReader& read) {
                             add_material(scene, material, "`specimen.material`"), Edge::mirror};
     scene.inputs.push_back(path);
   }
+  add_shapes_in_memory(shapes, material, scene);
   scene.notes.insert(scene.notes.end(), of_materials.begin(), of_materials.end());
   const char* const of_heights = request.heights.pitch_x_nm         ? "`scan.height_pitch`"
                                  : request.heights.z_unit_nm        ? "`scan.height_unit`"
@@ -149,12 +167,19 @@ void describe(ParameterVisitor& visit, SpecimenRequest& r) {
 }
 
 SceneFile read_specimen(const SpecimenRequest& request, const BodyReader& read) {
-  if (request.inputs.empty())
+  return read_specimen(request, ShapesInMemory{}, read);
+}
+
+SceneFile read_specimen(const SpecimenRequest& request, const ShapesInMemory& shapes,
+                        const BodyReader& read) {
+  const bool in_memory = !shapes.meshes.empty() || shapes.field;
+  if (request.inputs.empty() && !in_memory)
     throw UsageError(
         "simulate", "no specimen is given",
         "Give a mesh, a height field or a scene file: 'semsurf simulate --help' has examples");
-  const bool is_file = request.inputs.size() == 1 && is_scene_file(request.inputs.front());
-  SceneFile scene = is_file ? from_file(request, read) : from_shapes(request, read);
+  const bool is_file =
+      request.inputs.size() == 1 && !in_memory && is_scene_file(request.inputs.front());
+  SceneFile scene = is_file ? from_file(request, read) : from_shapes(request, shapes, read);
   mc::Specimen& specimen = scene.specimen;
   if (request.substrate) {
     if (!specimen.substrate) specimen.substrate.emplace();

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <mutex>
+#include <utility>
 
 #include "surf/core/error.h"
 
@@ -30,6 +31,12 @@ int linked_count = 0;
   throw Unsupported(fmt::format("module {}", module.name),
                     fmt::format("what {} cannot be used: {}", module.provides, reason),
                     fmt::format("Install {} and semsurf with it", module.needs));
+}
+
+// Set by `set_module_folder`; empty: relative to the program.
+std::string& given_folder() {
+  static std::string folder;
+  return folder;
 }
 
 // Some libraries start threads while they are loaded, and end the program if they cannot. They are
@@ -75,7 +82,10 @@ LinkedModule::LinkedModule(const char* name, ModuleEntry entry) {
 
 const char* module_version() { return SEMSURF_VERSION; }
 
+void set_module_folder(std::string folder) { given_folder() = std::move(folder); }
+
 std::string module_folder() {
+  if (!given_folder().empty()) return given_folder();
   char program[PATH_MAX + 1];
   const ssize_t length = readlink("/proc/self/exe", program, PATH_MAX);
   if (length <= 0) return SEMSURF_MODULE_FOLDER;

@@ -40,6 +40,10 @@ const Table& module() {
 /// The folder of the modules that are not linked: usually ../lib/semsurf, relative to the program.
 std::string module_folder();
 
+/// Sets this folder, for code of semsurf that a foreign program has loaded (Python). To be called
+/// before any module is used.
+void set_module_folder(std::string folder);
+
 /// Registers a linked module. `name` must stay valid.
 class LinkedModule {
  public:

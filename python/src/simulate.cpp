@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <optional>
+
+#include "arrays.h"
+#include "data.h"
+#include "surf/core/error.h"
+#include "surf/io/cache.h"
+#include "surf/io/image_file.h"
+#include "surf/io/sim/specimen_in_memory.h"
+#include "surf/io/tracks_file.h"
+#include "surf/workflow/simulate_job.h"
+#include "surf/workflow/specimen_reader.h"
+
+namespace surf::python {
+namespace {
+
+/// Files are named, shapes in memory are taken over.
+void add_specimen(py::handle part, io::SpecimenRequest& request, io::ShapesInMemory& shapes) {
+  if (PyList_Check(part.ptr()) || PyTuple_Check(part.ptr())) {
+    for (const py::handle one : part) add_specimen(one, request, shapes);
+    return;
+  }
+  if (is_path(part)) {
+    request.inputs.push_back(path_of(part));
+    return;
+  }
+  if (py::isinstance<Mesh>(part)) {
+    const Mesh mesh = mesh_of(part, {}, "specimen");
+    shapes.meshes.push_back({mesh.name, mesh.material, mesh.mesh});
+    return;
+  }
+  if (shapes.field) throw UsageError("specimen", "there are two height fields", "Give one at most");
+  if (py::isinstance<Heights>(part) && request.heights.pitch_x_nm)
+    throw UsageError("`scan.height_pitch`", "a HeightField has one already", "Leave it out");
+  shapes.field = heights_of(part, request.heights, "specimen").field;
+}
+
+py::object measured(double value, double standard_error) {
+  py::dict d;
+  d["value"] = value;
+  d["stderr"] = standard_error;
+  return findings(d);
+}
+
+py::list tracks_of(const std::vector<Track>& tracks) {
+  py::list all;
+  for (const Track& track : tracks) {
+    py::dict d;
+    py::array_t<double> points({static_cast<py::ssize_t>(track.points_nm.size()), py::ssize_t{3}});
+    for (std::size_t i = 0; i < track.points_nm.size(); ++i) {
+      double* const row = points.mutable_data(static_cast<py::ssize_t>(i), 0);
+      row[0] = track.points_nm[i].x, row[1] = track.points_nm[i].y, row[2] = track.points_nm[i].z;
+    }
+    d["points"] = points;
+    d["energies"] = array_of(track.energy_ev);
+    d["kind"] = name_of(track.kind);
+    d["secondary"] = track.secondary;
+    d["electron"] = track.electron;
+    all.append(findings(d));
+  }
+  return all;
+}
+
+namespace fs = std::filesystem;
+
+/// A folder that is gone with the object.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (fs::temp_directory_path() / "semsurf-XXXXXX").string();
+    if (!mkdtemp(name.data()))
+      throw FileError(name, "the folder cannot be made", "Check the disk, or set TMPDIR");
+    path_ = name;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  fs::path file(const char* name) const { return path_ / name; }
+
+ private:
+  fs::path path_;
+};
+
+/// Channels besides those of detectors are known while the job writes files: with any of them one
+/// file, which keeps every bit, is written and read again.
+class Simulation {
+ public:
+  explicit Simulation(workflow::SimulateJob job) : job_(std::move(job)) {
+    if (job_.extras.channels.empty()) return;
+    scratch_.emplace();
+    if (job_.outputs.empty()) job_.checkpoint.wanted = false;
+    job_.outputs.push_back(scratch_->file("image.exr"));
+  }
+
+  void run(const io::SpecimenRequest& request, const io::ShapesInMemory& shapes, const Call& call,
+           const workflow::Reporter& reporter) {
+    job_.scene = io::read_specimen(request, shapes, workflow::specimen_reader());
+    for (const std::string& note : job_.scene.notes) reporter.note(note);
+    call.apply(static_cast<mc::SimulationRequest&>(job_.scene));
+    summary_ = workflow::run(job_, reporter);
+    const bool is_in_file = scratch_ && fs::exists(scratch_->file("image.exr"));
+    image_ = is_in_file ? io::read_image(scratch_->file("image.exr")) : image_of(summary_);
+    for (const auto& [key, value] : summary_.record) image_.metadata[key] = value;
+    for (const fs::path& file : summary_.written)
+      if (file.string().ends_with(".tracks.vtp")) summary_.tracks = io::read_tracks(file);
+    if (scratch_)
+      std::erase_if(summary_.written, [&](const fs::path& file) {
+        return file.parent_path() == scratch_->file("").parent_path();
+      });
+  }
+
+  py::object result();
+
+ private:
+  workflow::SimulateJob job_;
+  workflow::SimulateSummary summary_;
+  Image image_;
+  std::optional<ScratchFolder> scratch_;
+};
+
+py::object Simulation::result() {
+  workflow::SimulateSummary& s = summary_;
+  if (image_.channels.empty()) return py::none();
+  Picture picture;
+  picture.image = std::move(image_);
+  picture.record = picture.image.metadata;
+  py::dict yields, found;
+  for (std::size_t d = 0; d < s.statistics.yields.size(); ++d)
+    yields[py::str(s.result.detectors[d].name)] =
+        measured(s.statistics.yields[d].mean, s.statistics.yields[d].standard_error);
+  found["yields"] = findings(yields);
+  found["method"] = mc::name(s.choice.method);
+  found["method_reason"] = s.choice.reason;
+  found["electrons"] = s.statistics.mean_electrons;
+  found["seconds"] = s.result.seconds;
+  found["complete"] = s.result.complete;
+  found["pixels_missed"] = s.statistics.missed;
+  if (s.charging) found["charging"] = describe(*s.charging);
+  if (!s.tracks.empty()) found["tracks"] = tracks_of(s.tracks);
+  py::list written, warnings;
+  for (const auto& file : s.written) written.append(file.string());
+  for (const std::string& warning : s.warnings) warnings.append(with_keywords(warning));
+  found["written"] = written;
+  found["warnings"] = warnings;
+  picture.found = findings(found);
+  return object_of(std::move(picture));
+}
+
+py::object simulate(const Call& call) {
+  workflow::SimulateJob job;
+  job.cache = io::cache_folder();
+  call.apply(job);  // numbers first: a wrong one does not wait for a large mesh
+  job.command_line = "semsurf.simulate(...) in Python";
+  auto request = call.told<io::SpecimenRequest>();
+  io::ShapesInMemory shapes;
+  add_specimen(call["specimen"], request, shapes);
+  Simulation simulation(std::move(job));
+  call.work(
+      [&](const workflow::Reporter& reporter) { simulation.run(request, shapes, call, reporter); },
+      [&] { return simulation.result(); });
+  return simulation.result();
+}
+
+}  // namespace
+
+void add_simulate(py::module_& module) {
+  Function f{.name = "simulate", .summary = "Simulate the SEM image of a specimen by Monte Carlo."};
+  f.details =
+      "Any two of `size`, `pixel_size` and `region` define the scan. With one the specimen's\n"
+      "extent gives the rest; with none it is 256 pixels across the longer side. Lengths are nm,\n"
+      "energies eV, angles degrees; texts may carry another unit: '5keV', '2nm', '40deg'.";
+  f.arguments = {{"specimen", "PathLike | Mesh | HeightField | ArrayLike | Sequence",
+                  "A scene file (TOML); or meshes and at most one height field, as files, objects "
+                  "or an array of heights in nm.",
+                  true, false}};
+  f.takes<io::SpecimenRequest>({}, {"specimen.input"}).takes<workflow::SimulateJob>();
+  f.result_type = "Image";
+  f.result =
+      "Counts per primary: 'SE', 'SE.stderr', 'BSE', 'BSE.stderr' and so on. `record` is as in "
+      "files; `found` has the mean yields with standard errors, the method and the warnings.";
+  f.example =
+      ">>> image = semsurf.simulate('cube.stl', material='Si', substrate='Si', tilt=40)\n"
+      ">>> image['SE'].mean(), image.stderr('SE').max()";
+  define(module, f, simulate);
+}
+
+}  // namespace surf::python
