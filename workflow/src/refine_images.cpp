@@ -41,14 +41,14 @@ RefineImages::RefineImages(const RefineJob& job, mc::LibrarySource& libraries)
       std::clamp(0.5 * mc::reach_nm(medium, own) + 2 * job.spot_nm, least_margin, largest_margin);
 }
 
-double RefineImages::tilt_deg(std::size_t view, const ViewState& state) const {
+double RefineImages::tilt_deg(std::size_t view, const RefinedViewState& state) const {
   return beam(view, state).tilt_deg;
 }
-double RefineImages::azimuth_deg(std::size_t view, const ViewState& state) const {
+double RefineImages::azimuth_deg(std::size_t view, const RefinedViewState& state) const {
   return beam(view, state).azimuth_deg;
 }
 
-mc::Beam RefineImages::beam(std::size_t view, const ViewState& state) const {
+mc::Beam RefineImages::beam(std::size_t view, const RefinedViewState& state) const {
   mc::Beam out;
   out.energy_ev = job_.energy_ev;
   out.spot_nm = job_.spot_nm;
@@ -63,7 +63,7 @@ mc::Beam RefineImages::beam(std::size_t view, const ViewState& state) const {
   return out;
 }
 
-mc::Scan RefineImages::scan(std::size_t view, const ViewState& state) const {
+mc::Scan RefineImages::scan(std::size_t view, const RefinedViewState& state) const {
   const PlacedImage& image = job_.images[view].image;
   const mc::Beam own = beam(view, state);
   const BeamAxes axes = beam_axes(own.tilt_deg, own.azimuth_deg);
@@ -85,9 +85,10 @@ mc::Specimen RefineImages::specimen(const TriangleMesh& mesh) const {
   return out;
 }
 
-RefineImage RefineImages::render(const TriangleMesh& mesh, std::size_t view, const ViewState& state,
-                                 std::int64_t electrons, std::uint64_t seed, int threads,
-                                 const Watch& watch, const Grid<std::int64_t>* pixels) const {
+RefineImage RefineImages::render(const TriangleMesh& mesh, std::size_t view,
+                                 const RefinedViewState& state, std::int64_t electrons,
+                                 std::uint64_t seed, int threads, const Watch& watch,
+                                 const Grid<std::int64_t>* pixels) const {
   const std::string signal = of_view(job_.signals, view, std::string("SE"));
   mc::SimulationOptions options;
   options.budget = mc::ElectronsPerPixel{electrons};
@@ -118,7 +119,7 @@ RefineImage RefineImages::render(const TriangleMesh& mesh, std::size_t view, con
 }
 
 Grid<Vec3> RefineImages::seen(const TriangleMesh& mesh, std::size_t view,
-                              const ViewState& state) const {
+                              const RefinedViewState& state) const {
   const mc::Scan grid = scan(view, state);
   const mc::Beam own = beam(view, state);
   const mc::Scene scene(specimen(mesh), own, grid, job_.physics, {.distance_grid_bytes = 0});
@@ -141,7 +142,7 @@ Grid<Vec3> RefineImages::seen(const TriangleMesh& mesh, std::size_t view,
 
 void RefineImages::add_effects(const TriangleMesh& base, const std::vector<MeshMode>& modes,
                                const std::vector<double>& amplitudes_nm,
-                               const std::vector<ViewState>& states, std::uint64_t seed,
+                               const std::vector<RefinedViewState>& states, std::uint64_t seed,
                                const Watch& watch, std::vector<RefinedView>& views,
                                std::int64_t& counted) const {
   constexpr int halves = 2;
@@ -180,7 +181,7 @@ void RefineImages::add_effects(const TriangleMesh& base, const std::vector<MeshM
         const std::size_t v = task / per_view, g = task % per_view;
         RefinedView& view = views[v];
         if (g >= groups.size()) {
-          ViewState turned = states[v];
+          RefinedViewState turned = states[v];
           (g == groups.size() ? turned.tilt_x_deg : turned.tilt_y_deg) += step_deg;
           ModeEffect effect;
           for (std::uint32_t p = 0; p < view.measured.size(); ++p) effect.pixels.push_back(p);

@@ -21,26 +21,27 @@ class RefineImages {
  public:
   RefineImages(const RefineJob& job, mc::LibrarySource& libraries);
 
-  double tilt_deg(std::size_t view, const ViewState& state) const;
-  double azimuth_deg(std::size_t view, const ViewState& state) const;
+  double tilt_deg(std::size_t view, const RefinedViewState& state) const;
+  double azimuth_deg(std::size_t view, const RefinedViewState& state) const;
 
-  RefineImage render(const TriangleMesh& mesh, std::size_t view, const ViewState& state,
+  RefineImage render(const TriangleMesh& mesh, std::size_t view, const RefinedViewState& state,
                      std::int64_t electrons, std::uint64_t seed, int threads, const Watch& watch,
                      const Grid<std::int64_t>* pixels = nullptr) const;
 
   /// What the middles of pixels see of the mesh; NaN where they see nothing.
-  Grid<Vec3> seen(const TriangleMesh& mesh, std::size_t view, const ViewState& state) const;
+  Grid<Vec3> seen(const TriangleMesh& mesh, std::size_t view, const RefinedViewState& state) const;
 
   /// What modes change in a view, by two simulations with the seeds `seed` and `seed` + 1; and
   /// tilts of the beam, where they are fitted. `counted` adds up primaries.
   void add_effects(const TriangleMesh& base, const std::vector<MeshMode>& modes,
-                   const std::vector<double>& amplitudes_nm, const std::vector<ViewState>& states,
-                   std::uint64_t seed, const Watch& watch, std::vector<RefinedView>& views,
+                   const std::vector<double>& amplitudes_nm,
+                   const std::vector<RefinedViewState>& states, std::uint64_t seed,
+                   const Watch& watch, std::vector<RefinedView>& views,
                    std::int64_t& counted) const;
 
  private:
-  mc::Beam beam(std::size_t view, const ViewState& state) const;
-  mc::Scan scan(std::size_t view, const ViewState& state) const;
+  mc::Beam beam(std::size_t view, const RefinedViewState& state) const;
+  mc::Scan scan(std::size_t view, const RefinedViewState& state) const;
   mc::Specimen specimen(const TriangleMesh& mesh) const;
 
   const RefineJob& job_;

@@ -82,7 +82,8 @@ void check(const RefineJob& job) {
 }
 
 /// Noise of an image, by its flat places, or by what a simulated image leaves.
-SemNoise noise_of(const PlacedImage& image, const Grid<double>& simulated, const ViewState& s) {
+SemNoise noise_of(const PlacedImage& image, const Grid<double>& simulated,
+                  const RefinedViewState& s) {
   try {
     return estimate_sem_noise(image).noise;
   } catch (const InvalidInput&) {
@@ -110,7 +111,7 @@ double correlation(const RefinedView& v) {
 }
 
 /// Rms of what gain and offset leave, less what noise makes of it, over the signal's deviation.
-double unexplained_share(const RefinedView& v, const ViewState& s, const SemNoise& noise) {
+double unexplained_share(const RefinedView& v, const RefinedViewState& s, const SemNoise& noise) {
   double n = 0, left = 0, sum = 0, squares = 0, chance = 0;
   for (std::size_t p = 0; p < v.measured.size(); ++p) {
     if (!v.used.includes(p)) continue;
@@ -149,7 +150,11 @@ class Refinement {
     const double pixel = smallest_pixel();
     edge_nm_ = job_.edge_nm > 0 ? job_.edge_nm : 2 * pixel;
     const double spacing = job_.spacing_nm > 0 ? job_.spacing_nm : edges_per_spacing * edge_nm_;
-    base_ = remesh(base_, {.edge_nm = edge_nm_, .region_nm = box, .watch = {{}, told_.cancel}});
+    // Where modes fade away, too: coarse triangles would cut each other there.
+    Box region = box;
+    region.lower_nm -= Vec3{fade_nm(), fade_nm(), 0},
+        region.upper_nm += Vec3{fade_nm(), fade_nm(), 0};
+    base_ = remesh(base_, {.edge_nm = edge_nm_, .region_nm = region, .watch = {{}, told_.cancel}});
     summary_.before = base_;
     const ModePrior prior{job_.start_error_nm, job_.bump_error_nm, job_.bump_length_nm};
     begin(told_, "whole shape");
@@ -202,7 +207,7 @@ class Refinement {
     const Grid<double> chance = view.variance;
     std::ranges::fill(view.variance.data(), 1.0);
     fit_gain(view, states_[v]);
-    const ViewState& s = states_[v];
+    const RefinedViewState& s = states_[v];
     noise_[v] = noise_of(job_.images[v].image, view.simulated, s);
     std::vector<double> levels;
     for (const double y : view.simulated.data()) levels.push_back(s.gain * y + s.offset);
@@ -400,7 +405,7 @@ class Refinement {
   SharedLibraries libraries_;
   RefineImages images_;
   std::vector<RefinedView> views_;
-  std::vector<ViewState> states_;
+  std::vector<RefinedViewState> states_;
   std::vector<SemNoise> noise_;
   TriangleMesh base_;
   double edge_nm_ = 0;

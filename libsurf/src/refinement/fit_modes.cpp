@@ -102,7 +102,7 @@ Eigen::Map<const Eigen::MatrixXd> square(const std::vector<double>& values, std:
 
 }  // namespace
 
-void fit_gain(const RefinedView& view, ViewState& state) {
+void fit_gain(const RefinedView& view, RefinedViewState& state) {
   const std::vector<double> weights = weights_of(view);
   double sum = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (std::size_t p = 0; p < weights.size(); ++p) {
@@ -116,7 +116,8 @@ void fit_gain(const RefinedView& view, ViewState& state) {
   state.offset = (y - state.gain * x) / sum;
 }
 
-ModeFit fit_modes(const std::vector<RefinedView>& views, const std::vector<ViewState>& states,
+ModeFit fit_modes(const std::vector<RefinedView>& views,
+                  const std::vector<RefinedViewState>& states,
                   const std::vector<double>& amplitudes, const std::vector<double>& prior) {
   const std::size_t modes = amplitudes.size();
   if (prior.size() != modes * modes || states.size() != views.size())
@@ -134,7 +135,7 @@ ModeFit fit_modes(const std::vector<RefinedView>& views, const std::vector<ViewS
   ModeFit out;
   for (std::size_t v = 0; v < views.size(); ++v) {
     const RefinedView& view = views[v];
-    const ViewState& state = states[v];
+    const RefinedViewState& state = states[v];
     check(view, modes);
     const std::size_t pixels = view.measured.size();
     const std::vector<double> weights = weights_of(view);
@@ -196,7 +197,7 @@ ModeFit fit_modes(const std::vector<RefinedView>& views, const std::vector<ViewS
   for (std::size_t v = 0; v < views.size(); ++v) {
     const Eigen::VectorXd by =
         change.segment(size + static_cast<Eigen::Index>(state_numbers * v), state_numbers);
-    ViewState s = states[v];
+    RefinedViewState s = states[v];
     s.gain += by[gain], s.offset += by[offset];
     s.shift_x_nm += by[shift_x], s.shift_y_nm += by[shift_y];
     s.tilt_x_deg += by[tilt_x], s.tilt_y_deg += by[tilt_y];

@@ -34,7 +34,7 @@ struct RefinedView {
 
 /// Gain, offset and place of an image. Its measured values at a place are gain times the simulated
 /// ones at the place less the shift, plus the offset.
-struct ViewState {
+struct RefinedViewState {
   double gain = 1, offset = 0;
   double shift_x_nm = 0, shift_y_nm = 0;  ///< what is to be added to the image's frame
   double tilt_x_deg = 0, tilt_y_deg = 0;
@@ -43,7 +43,7 @@ struct ViewState {
 struct ModeFit {
   std::vector<double> amplitudes_nm;  ///< of each mode
   std::vector<double> covariance;     ///< of the amplitudes, row-major
-  std::vector<ViewState> views;
+  std::vector<RefinedViewState> views;
   /// What each view alone tells of each mode: one over the variance that its amplitude would have
   /// if all else were known, 1/nm^2.
   std::vector<std::vector<double>> information;
@@ -51,7 +51,7 @@ struct ModeFit {
 };
 
 /// Gain and offset of an image by the weighted least squares of its pixels.
-void fit_gain(const RefinedView& view, ViewState& state);
+void fit_gain(const RefinedView& view, RefinedViewState& state);
 
 /// The view as a Gaussian of `sigma_px` pixels (>= 0) blurs it, measured and simulated alike, so
 /// that steps reach farther than an edge is wide. Effects must be of all pixels in their order, or
@@ -63,7 +63,8 @@ RefinedView blurred(const RefinedView& view, double sigma_px);
 /// were simulated; `prior` their covariance beforehand. What chance makes of an effect does not
 /// count: effects are scaled by what both simulations of them have in common. Throws InvalidInput
 /// for sizes that do not match.
-ModeFit fit_modes(const std::vector<RefinedView>& views, const std::vector<ViewState>& states,
+ModeFit fit_modes(const std::vector<RefinedView>& views,
+                  const std::vector<RefinedViewState>& states,
                   const std::vector<double>& amplitudes_nm, const std::vector<double>& prior);
 
 /// Standard deviation of the displacement of each vertex along its normal.

@@ -52,7 +52,7 @@ void describe(ParameterVisitor& visit, RefineJob& job);
 /// An image, as it is taken and as the refined mesh looks.
 struct RefinedImage {
   double tilt_deg = 0, azimuth_deg = 0;  ///< fitted
-  ViewState state;
+  RefinedViewState state;
   Grid<double> simulated;           ///< gain and offset applied, on the image's pixels
   Grid<double> residual;            ///< measured less simulated, in standard deviations
   Grid<double> sensitivity_per_nm;  ///< of the surface that each pixel sees, see `sensitivity`
