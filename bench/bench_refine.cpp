@@ -126,7 +126,9 @@ Case line_case(double angle, double tilt) {
           line(92, angle, 100, 4, 3),
           line(98, 90, 104, 3, 3),
           tilt,
-          64, 16, 100,
+          64,
+          16,
+          100,
           100 * std::tan((angle - 90) * std::numbers::pi / 180)};
 }
 

@@ -31,4 +31,6 @@ if(NOT site)
     string(REGEX REPLACE "^/(local/)?" "" site "${site}")
   endif()
 endif()
+# The package in the build folder: its tests take it from there.
+set(SEMSURF_PYTHON_FOLDER "${CMAKE_BINARY_DIR}/python")
 add_subdirectory(python)

@@ -97,7 +97,7 @@ TriangleMesh remesh(const TriangleMesh& mesh, const RemeshOptions& o) {
     TriangleMesh out = remesh_chosen(whole, chosen, fewer);
     if (out.triangles.empty())
       throw InvalidInput("mesh", "more than two triangles share an edge, or neighbours disagree",
-                         "Mend it: semsurf mesh broken.stl --repair -o mended.stl");
+                         "Repair it first");
     if (!cuts_itself(out)) return out;
   }
   split_long(whole, o.region_nm, longest_edges * o.edge_nm, o.watch);
