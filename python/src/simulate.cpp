@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <cstdlib>
-#include <optional>
+#include <utility>
 
 #include "arrays.h"
 #include "data.h"
 #include "surf/core/error.h"
 #include "surf/io/cache.h"
-#include "surf/io/image_file.h"
 #include "surf/io/sim/specimen_in_memory.h"
 #include "surf/io/tracks_file.h"
 #include "surf/workflow/simulate_job.h"
@@ -64,40 +62,9 @@ py::list tracks_of(const std::vector<Track>& tracks) {
   return all;
 }
 
-namespace fs = std::filesystem;
-
-/// A folder that is gone with the object.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (fs::temp_directory_path() / "semsurf-XXXXXX").string();
-    if (!mkdtemp(name.data()))
-      throw FileError(name, "the folder cannot be made", "Check the disk, or set TMPDIR");
-    path_ = name;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  fs::path file(const char* name) const { return path_ / name; }
-
- private:
-  fs::path path_;
-};
-
-/// Channels besides those of detectors are known while the job writes files: with any of them one
-/// file, which keeps every bit, is written and read again.
 class Simulation {
  public:
-  explicit Simulation(workflow::SimulateJob job) : job_(std::move(job)) {
-    if (job_.extras.channels.empty()) return;
-    scratch_.emplace();
-    if (job_.outputs.empty()) job_.checkpoint.wanted = false;
-    job_.outputs.push_back(scratch_->file("image.exr"));
-  }
+  explicit Simulation(workflow::SimulateJob job) : job_(std::move(job)) {}
 
   void run(const io::SpecimenRequest& request, const io::ShapesInMemory& shapes, const Call& call,
            const workflow::Reporter& reporter) {
@@ -105,15 +72,8 @@ class Simulation {
     for (const std::string& note : job_.scene.notes) reporter.note(note);
     call.apply(static_cast<mc::SimulationRequest&>(job_.scene));
     summary_ = workflow::run(job_, reporter);
-    const bool is_in_file = scratch_ && fs::exists(scratch_->file("image.exr"));
-    image_ = is_in_file ? io::read_image(scratch_->file("image.exr")) : image_of(summary_);
-    for (const auto& [key, value] : summary_.record) image_.metadata[key] = value;
-    for (const fs::path& file : summary_.written)
+    for (const std::filesystem::path& file : summary_.written)
       if (file.string().ends_with(".tracks.vtp")) summary_.tracks = io::read_tracks(file);
-    if (scratch_)
-      std::erase_if(summary_.written, [&](const fs::path& file) {
-        return file.parent_path() == scratch_->file("").parent_path();
-      });
   }
 
   py::object result();
@@ -121,15 +81,13 @@ class Simulation {
  private:
   workflow::SimulateJob job_;
   workflow::SimulateSummary summary_;
-  Image image_;
-  std::optional<ScratchFolder> scratch_;
 };
 
 py::object Simulation::result() {
   workflow::SimulateSummary& s = summary_;
-  if (image_.channels.empty()) return py::none();
+  if (s.image.channels.empty()) return py::none();
   Picture picture;
-  picture.image = std::move(image_);
+  picture.image = std::move(s.image);
   picture.record = picture.image.metadata;
   py::dict yields, found;
   for (std::size_t d = 0; d < s.statistics.yields.size(); ++d)
@@ -156,6 +114,7 @@ py::object Simulation::result() {
 py::object simulate(const Call& call) {
   workflow::SimulateJob job;
   job.cache = io::cache_folder();
+  job.keep_image = true;
   call.apply(job);  // numbers first: a wrong one does not wait for a large mesh
   job.command_line = "semsurf.simulate(...) in Python";
   auto request = call.told<io::SpecimenRequest>();

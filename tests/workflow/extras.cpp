@@ -84,6 +84,22 @@ TEST(Extras, SpectraAddUpToYields) {
   EXPECT_GT(sums["SE-side polar"], 0.1 * sums["SE polar"]);
 }
 
+TEST(Extras, AnImageThatIsKeptIsWhatTheFileHolds) {
+  const TemporaryFolder folder;
+  SimulateJob job = job_in(folder, "kept");
+  job.extras.channels = {"z_nm", "electrons"};
+  job.keep_image = true;
+  const SimulateSummary summary = run(job);
+  const Image file = io::read_image(job.outputs[0]);
+  ASSERT_EQ(summary.image.channels.size(), file.channels.size());
+  for (std::size_t c = 0; c < file.channels.size(); ++c) {
+    EXPECT_EQ(summary.image.channels[c].name, file.channels[c].name);
+    EXPECT_EQ(summary.image.channels[c].values, file.channels[c].values);
+  }
+  job.keep_image = false;
+  EXPECT_TRUE(run(job).image.channels.empty());
+}
+
 TEST(Extras, ADoseReplacesTheNumberOfElectrons) {
   const TemporaryFolder folder;
   SimulateJob job = job_in(folder, "a");

@@ -356,6 +356,7 @@ SimulateSummary run(SimulateJob asked, const Reporter& reporter, Team* team,
   summary.record = settings;
   summary.record.merge(outcome(summary));
   summary.record.merge(output_settings(job));
+  if (job.keep_image) summary.image = to_image(labelled_image(job, scene, summary));
   if (job.outputs.empty()) {
     if (job.extras.trajectories > 0)
       summary.tracks = record_trajectories(scene, job.options.seed, job.extras.trajectories,

@@ -81,6 +81,7 @@ struct SimulateJob {
   std::vector<std::filesystem::path> outputs;
   std::string png_channel;  ///< channel shown in a PNG; empty: SE, or SE.shot with a dose
   io::Layout layout = io::Layout::automatic;  ///< of EXR and TIFF
+  bool keep_image = false;                    ///< also in memory, with all its channels
   std::string command_line;                   ///< for the sidecar
 };
 
@@ -116,6 +117,7 @@ struct SimulateSummary {
   std::vector<std::string> warnings;
   /// Everything that affects the result, and its balance: the metadata of an image.
   Record record;
+  Image image;                ///< with all channels; empty without SimulateJob::keep_image
   std::vector<Track> tracks;  ///< the tracks asked for by the extras of a job without outputs
   std::vector<std::filesystem::path> written;  ///< outputs, extras and their .run.json sidecars
   std::vector<TeamMember> team;                ///< work of each member; none without a team
