@@ -8,7 +8,6 @@
 #include "bound_parameters.h"
 #include "commands.h"
 #include "common_options.h"
-#include "exit_codes.h"
 #include "job_reporter.h"
 #include "mesh_parameters.h"
 #include "picture_input.h"
@@ -166,8 +165,7 @@ int compare(const Options& o, const std::string& command_line) {
     s = workflow::run(job, reporter);
   }
   if (!o.quiet) print_summary(job, s);
-  for (const std::string& reason : s.reasons) print_warning(reason);
-  return s.reasons.empty() ? 0 : exit_untrustworthy;
+  return print_reasons(s.reasons);
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include "bound_parameters.h"
 #include "commands.h"
 #include "common_options.h"
-#include "exit_codes.h"
 #include "job_reporter.h"
 #include "picture_input.h"
 #include "sem_input.h"
@@ -159,8 +158,7 @@ int profile(const Options& o) {
     s = workflow::run(job, reporter);
   }
   if (!o.quiet) print_summary(job, s);
-  for (const std::string& reason : s.reasons) print_warning(reason);
-  return s.reasons.empty() ? 0 : exit_untrustworthy;
+  return print_reasons(s.reasons);
 }
 
 }  // namespace

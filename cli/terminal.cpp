@@ -92,6 +92,10 @@ void be_silent(bool wanted) { silent = wanted; }
 void print_error(const std::string& message) { print_line("error", message); }
 void print_warning(const std::string& message) { print_line("warning", message); }
 void print_note(const std::string& message) { print_line("note", message); }
+int print_reasons(const std::vector<std::string>& reasons) {
+  for (const std::string& reason : reasons) print_warning(reason);
+  return reasons.empty() ? 0 : exit_untrustworthy;
+}
 
 std::string format_count(double count) {
   static constexpr const char* suffixes[] = {"", " k", " M", " G", " T"};

@@ -39,6 +39,8 @@ void call_fields(FieldWord word);
 void print_error(const std::string& message);
 void print_warning(const std::string& message);
 void print_note(const std::string& message);
+/// Why a result is not to be trusted, as warnings, and the exit code that says so; 0 without any.
+int print_reasons(const std::vector<std::string>& reasons);
 
 /// Whether these say anything, and a progress bar: not where another process does.
 void be_silent(bool silent = true);

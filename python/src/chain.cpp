@@ -210,7 +210,7 @@ void add_surface(Reconstruction& r, py::dict& d) {
   if (!r.simulated_afm.z_nm.empty()) d["simulated_afm"] = heights_object(r.simulated_afm);
   if (!r.tip.z_nm.empty()) d["tip"] = tip_object(r.tip);
   d["start"] = heights_object(r.start);
-  d["gains"] = py::cast(r.gains);
+  d["gains"] = array_of(r.gains);
   d["offset"] = r.offset;
   d["converged"] = r.converged;
   d["transform"] = matrix_of(r.sem_to_afm);
