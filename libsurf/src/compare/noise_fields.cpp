@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <functional>
 #include <mutex>
 #include <numbers>
 #include <vector>
@@ -33,6 +34,22 @@ int quick_length(int n) {
       while (rest % factor == 0) rest /= factor;
     if (rest == 1) return length;
   }
+}
+
+/// What to take off a spectrum so that its parts above 0 add up to `sum`: the nearest spectrum that
+/// belongs to a noise of variance 1 (projection onto the simplex, Duchi et al. 2008,
+/// doi:10.1145/1390156.1390191). Estimated correlations need not belong to any noise, and cutting
+/// off what is below 0 alone would add noise without correlation.
+double surplus(std::vector<double> spectrum, double sum) {
+  std::ranges::sort(spectrum, std::greater());
+  double above = 0, less = 0;
+  for (std::size_t i = 0; i < spectrum.size(); ++i) {
+    above += spectrum[i];
+    const double trial = (above - sum) / double(i + 1);
+    if (spectrum[i] <= trial) break;
+    less = trial;
+  }
+  return less;
 }
 
 std::mutex& planner() {
@@ -72,11 +89,11 @@ struct NoiseFields::Plan {
       for (int dx = -r; dx <= r; ++dx)
         b[index((dx + width) % width, (dy + height) % height)] += float(c.at(dx, dy));
     fftwf_execute_dft(backward, raw(b.get()), raw(b.get()));
-    // Estimated correlations need not belong to any noise: spectra below 0 are cut off.
-    double sum = 0;
-    for (std::size_t i = 0; i < count(); ++i) sum += std::max(0.0F, b[i].real());
+    std::vector<double> spectrum(count());
+    for (std::size_t i = 0; i < count(); ++i) spectrum[i] = double(b[i].real());
+    const double less = surplus(spectrum, double(count()));
     for (std::size_t i = 0; i < count(); ++i)
-      amplitude[i] = float(std::sqrt(std::max(0.0, double(b[i].real())) / sum));
+      amplitude[i] = float(std::sqrt(std::max(0.0, spectrum[i] - less) / double(count())));
   }
   ~Plan() {
     const std::lock_guard lock(planner());

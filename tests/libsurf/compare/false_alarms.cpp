@@ -70,7 +70,7 @@ TEST(FalseAlarmsOfMany, AreNoMoreThanAskedForAmongWallsAndSlopes) {
 }
 
 TEST(FalseAlarmsOfMany, AreNoMoreThanAskedForWithCorrelatedNoise) {
-  EXPECT_LE(alarms_of(200, 72, 1.5, 7000), 24);
+  EXPECT_LE(alarms_of(200, 72, 1.5, 27000), 24);
 }
 
 TEST(FalseAlarmsOfMany, AreNoMoreThanAskedForAmongWallsNarrowerThanSamples) {
