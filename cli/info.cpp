@@ -19,6 +19,7 @@
 #include "surf/io/sem_file.h"
 #include "surf/io/sim/materials.h"
 #include "surf/io/sim/scene_file.h"
+#include "surf/workflow/describe_file.h"
 #include "surf/workflow/simulate_job.h"
 #include "terminal.h"
 
@@ -30,7 +31,8 @@ constexpr const char* examples = R"(Examples:
   semsurf info out/cube.exr            channels, and every setting that made the image
   semsurf info scan.gwy                channels, pixels, heights and what the microscope noted
   semsurf info si-1keV-3nm.json        what a model is for, and how far it is off
-  semsurf info samples/mesa80.toml     specimen, scan and physics in words)";
+  semsurf info samples/mesa80.toml     specimen, scan and physics in words
+  semsurf info --json *.spm            numbers for scripts)";
 
 std::string join(const std::vector<std::string>& words) {
   return fmt::format("{}", fmt::join(words, ", "));
@@ -124,28 +126,56 @@ void print_foreign_file(const std::filesystem::path& path) {
 
 void print_info(const std::filesystem::path& path, const io::MeshUnit& unit,
                 const std::vector<std::filesystem::path>& material_files) {
-  if (io::is_scene_file(path)) return print_scene(path, material_files);
-  if (io::is_model_file(path)) return print_model(path);
-  if (io::is_height_field_file(path)) return print_height_file(path);
-  if (io::is_sem_image_file(path)) return print_sem_image(path);
-  if (io::is_image_file(path)) return print_image(path);
-  if (io::is_mesh_file(path) || io::has_mesh_content(path)) return print_mesh(path, unit);
+  using workflow::FileKind;
+  switch (workflow::kind_of(path)) {
+    case FileKind::scene:
+      return print_scene(path, material_files);
+    case FileKind::model:
+      return print_model(path);
+    case FileKind::heights:
+      return print_height_file(path);
+    case FileKind::sem_image:
+      return print_sem_image(path);
+    case FileKind::image:
+      return print_image(path);
+    case FileKind::mesh:
+      return print_mesh(path, unit);
+    case FileKind::unknown:
+      break;
+  }
   print_foreign_file(path);
 }
 
-// All of them, whatever is wrong with some. The code is that of the first that cannot be shown.
-int print_all(const std::vector<std::string>& files, const io::MeshUnit& unit,
-              const std::vector<std::filesystem::path>& material_files) {
+using Files = std::vector<std::filesystem::path>;
+
+/// Tells each file by `tell`, whatever is wrong with some. The code is that of the first that
+/// cannot be shown.
+template <class Tell>
+int each(const std::vector<std::string>& files, const Tell& tell) {
   int code = 0;
   for (const std::string& file : files) {
     try {
-      print_info(file, unit, material_files);
+      tell(file);
     } catch (...) {
       flush();  // what was said before the message
       const int failed = report_failure();
       if (code == 0) code = failed;
     }
   }
+  return code;
+}
+
+/// A list of one object per file.
+int print_json(const std::vector<std::string>& files, const io::MeshUnit& unit,
+               const Files& material_files) {
+  print("[");
+  const char* before = "\n";
+  const int code = each(files, [&](const std::string& file) {
+    const std::string text = workflow::describe_file(file, unit, material_files);
+    print("{}{}", before, text);
+    before = ",\n";
+  });
+  print("\n]\n");
   return code;
 }
 
@@ -171,6 +201,7 @@ void add_info(CLI::App& app, Action& action) {
   struct Options {
     BoundParameters bound;
     std::vector<std::string> files;
+    bool json = false;
   };
   const auto options = std::make_shared<Options>();
   CLI::App* sub =
@@ -181,6 +212,8 @@ void add_info(CLI::App& app, Action& action) {
   options->bound.add<io::SpecimenRequest>(*sub, "Options", {},
                                           {"specimen.unit", "specimen.override_unit"});
   options->bound.add<io::MaterialChoice>(*sub, "Options", {}, {"specimen.materials"});
+  sub->add_flag("--json", options->json, "The same as JSON: a list of one object per file")
+      ->group("Options");
   sub->footer(examples);
   sub->callback([options, &action] {
     action = [options] {
@@ -190,7 +223,11 @@ void add_info(CLI::App& app, Action& action) {
       io::SpecimenRequest request;
       io::MaterialChoice own;
       options->bound.apply(request), options->bound.apply(own);
-      return print_all(options->files, mesh_unit_of(request), {own.files.begin(), own.files.end()});
+      const io::MeshUnit unit = mesh_unit_of(request);
+      const Files material_files{own.files.begin(), own.files.end()};
+      if (options->json) return print_json(options->files, unit, material_files);
+      return each(options->files,
+                  [&](const std::string& file) { print_info(file, unit, material_files); });
     };
   });
 }

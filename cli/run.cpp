@@ -265,7 +265,12 @@ std::unique_ptr<CLI::App> make_app(Action& action, const std::string& command_li
       "simulation",
       "semsurf");
   app->formatter(std::make_shared<HelpFormatter>());
-  app->set_version_flag("-V,--version", version_text, "Versions of semsurf and its libraries");
+  // Before the version, so that it is known when that is told.
+  const auto as_json = std::make_shared<bool>(false);
+  app->add_flag("--json", *as_json, "With --version: as JSON");
+  app->set_version_flag(
+      "-V,--version", [as_json] { return *as_json ? workflow::version_json() : version_text(); },
+      "Versions of semsurf and its libraries");
   app->footer(examples);
   app->allow_windows_style_options(false);
   add_commands(*app, action, command_line);

@@ -1,4 +1,6 @@
-# What `cmake --install` gives: libraries, headers, the program, the package for find_package(semsurf).
+# What `cmake --install` gives: libraries, headers, the program, the package for find_package(semsurf). Each part is a
+# component of the package that it belongs to (cmake/packages.cmake); what names none is for developers,
+# and `plain` is what Debian's packages have in another form.
 include(CMakePackageConfigHelpers)
 set(SEMSURF_PACKAGE_DIR "${CMAKE_INSTALL_LIBDIR}/cmake/semsurf")
 
@@ -6,7 +8,7 @@ foreach(folder libsurf mc_sim io workflow)
   install(DIRECTORY ${folder}/include/ DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
           FILES_MATCHING PATTERN "*.h")
 endforeach()
-install(TARGETS semsurf_program RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+install(TARGETS semsurf_program RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT program)
 
 # Shell completion, printed by the program itself.
 set(completions)
@@ -19,14 +21,14 @@ endforeach()
 file(MAKE_DIRECTORY "${CMAKE_BINARY_DIR}/completions")
 add_custom_target(completions ALL DEPENDS ${completions})
 install(FILES "${CMAKE_BINARY_DIR}/completions/semsurf.bash" RENAME semsurf
-        DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions")
+        DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT program)
 install(FILES "${CMAKE_BINARY_DIR}/completions/semsurf.zsh" RENAME _semsurf
-        DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/site-functions")
+        DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/site-functions" COMPONENT plain)
 install(FILES "${CMAKE_BINARY_DIR}/completions/semsurf.fish"
-        DESTINATION "${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d")
+        DESTINATION "${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d" COMPONENT program)
 
-install(FILES docs/reference/semsurf.1 DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
-install(FILES LICENSE README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(FILES docs/reference/semsurf.1 DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT plain)
+install(FILES LICENSE README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT plain)
 
 get_property(SEMSURF_COMPONENTS GLOBAL PROPERTY SEMSURF_COMPONENTS)
 foreach(component IN LISTS SEMSURF_COMPONENTS)

@@ -1,9 +1,10 @@
 # Modules: parts that stand on large libraries of others (libsurf/include/surf/core/module.h).
 #
-# semsurf_module(NAME OF library SOURCES files... [LIBS libs...] [INCLUDES folders...])
+# semsurf_module(NAME OF library [PACKAGE component] SOURCES files... [LIBS libs...] [INCLUDES folders...])
 # Makes of the sources, one of which has SEMSURF_MODULE(NAME, table),
 #   NAME_module   a static library that whoever links `library` links with it, as consumers of the package do, and
-#   NAME.so       a file that programs load when they first need it: those that called semsurf_loads_modules(TARGET).
+#   NAME.so       a file that programs load when they first need it: those that called semsurf_loads_modules(TARGET). It is
+#                 installed with the program, or with a package of its own (cmake/packages.cmake).
 # The files lie in the same place from the program in the build folder as where both are installed.
 set(SEMSURF_MODULE_LIBRARY_FOLDER "${CMAKE_INSTALL_LIBDIR}/semsurf")
 file(RELATIVE_PATH SEMSURF_MODULE_FOLDER "/prefix/${CMAKE_INSTALL_BINDIR}" "/prefix/${SEMSURF_MODULE_LIBRARY_FOLDER}")
@@ -11,7 +12,7 @@ define_property(TARGET PROPERTY SEMSURF_LOADS_MODULES BRIEF_DOCS "Loads modules 
 add_custom_target(semsurf_modules)
 
 function(semsurf_module name)
-  cmake_parse_arguments(ARG "" "OF" "SOURCES;LIBS;INCLUDES" ${ARGN})
+  cmake_parse_arguments(ARG "" "OF;PACKAGE" "SOURCES;LIBS;INCLUDES" ${ARGN})
   semsurf_library(${name}_module SOURCES ${ARG_SOURCES} PUBLIC ${ARG_OF} PRIVATE ${ARG_LIBS})
   add_library(semsurf::${name}_module ALIAS ${name}_module)
   target_include_directories(${name}_module PRIVATE ${ARG_INCLUDES})
@@ -29,7 +30,10 @@ function(semsurf_module name)
   add_dependencies(semsurf_modules ${name}_file)
   get_target_property(component ${ARG_OF} SEMSURF_COMPONENT)
   install(TARGETS ${name}_module EXPORT semsurf_${component} ARCHIVE DESTINATION "${SEMSURF_MODULE_LIBRARY_FOLDER}")
-  install(TARGETS ${name}_file LIBRARY DESTINATION "${SEMSURF_MODULE_LIBRARY_FOLDER}")
+  if(NOT ARG_PACKAGE)
+    set(ARG_PACKAGE program)
+  endif()
+  install(TARGETS ${name}_file LIBRARY DESTINATION "${SEMSURF_MODULE_LIBRARY_FOLDER}" COMPONENT ${ARG_PACKAGE})
 endfunction()
 
 function(semsurf_loads_modules target)

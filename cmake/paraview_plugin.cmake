@@ -19,6 +19,7 @@ paraview_plugin_build(
   PLUGINS ${paraview_plugins}
   INSTALL_HEADERS OFF
   ADD_INSTALL_RPATHS OFF
+  PLUGINS_COMPONENT paraview
   DISABLE_XML_DOCUMENTATION ON)   # that needs Qt; the texts are in the plugin all the same
 unset(BUILD_SHARED_LIBS)
 set(SEMSURF_PARAVIEW_FOLDER "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}/semsurf_paraview")

@@ -39,6 +39,7 @@ programs=(
   lib3mf-dev                                                      # the 3MF Consortium's own reader
   gwyddion                                                        # AFM formats that only it knows
   g++-aarch64-linux-gnu clang qemu-user                           # AArch64
+  dpkg-dev mmdebstrap lintian                                     # packages, and a clean system to try them in
 )
 
 say() { printf '==> %s\n' "$*"; }

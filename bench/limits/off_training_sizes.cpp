@@ -41,7 +41,7 @@ Sweep off_training_sizes() {
       {4, 6, 8, 10, 15, 20, 30, 45},
       at,
       8,
-      0.02,
+      0.15,
       plot};
 }
 

@@ -42,7 +42,7 @@ Sweep off_training_slopes() {
           {0.25, 0.5, 1, 1.4, 2, 2.8, 4, 6},
           at,
           2,
-          0.02,
+          0.15,
           plot};
 }
 

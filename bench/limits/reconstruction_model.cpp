@@ -81,7 +81,7 @@ Sweep reconstruction_material() {
           {0.5, 0.7, 0.8, 0.9, 0.95, 1, 1.05, 1.1, 1.2, 1.3, 1.5},
           at_power,
           1.1,
-          0.01,
+          0.05,
           [](const Table& t) {
             return plot(t, "Walls that brighten otherwise than the model says",
                         {"true brightness is the model's to the power of", false, {}});
@@ -95,7 +95,7 @@ Sweep reconstruction_drift() {
           {0, 0.005, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3},
           at_drift,
           0.05,
-          0.01,
+          0.05,
           [](const Table& t) {
             return plot(t, "Brightness that drifts over the image",
                         {"amplitude of the drift, share of brightness", false, {}});

@@ -91,7 +91,7 @@ Sweep reconstruction_last_scale() {
           {0.25, 0.5, 0.7, 1, 1.4, 2, 3, 5, 8, 15, 30},
           at_last,
           5,
-          1e-4,
+          0.03,
           plot_last};
 }
 
@@ -103,7 +103,7 @@ Sweep reconstruction_first_scale() {
           {0.5, 1, 2, 4, 8, 15, 30, 60},
           at_first,
           30,
-          1e-4,
+          0.15,
           plot_first};
 }
 

@@ -93,8 +93,8 @@ Sweep reconstruction_untouched() {
            "both_deviation_nm", "both_seen", "both_held_by_nothing", "warned"},
           {50, 70, 90, 110, 130, 150, 180, 220, 260, 320},
           at,
-          130,
-          0.06,
+          180,
+          0.25,
           plot};
 }
 

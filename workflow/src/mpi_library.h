@@ -11,7 +11,7 @@ namespace surf::workflow {
 /// The function table of the module `mpi`.
 struct MpiLibrary {
   static constexpr ModuleName module{"mpi", "shares a job between processes",
-                                     "MPI (Debian: libopenmpi3)", 300};
+                                     "MPI (Debian: libopenmpi3)", 300, "semsurf-mpi"};
   std::unique_ptr<Team> (*join)();
 };
 

@@ -47,7 +47,7 @@ class Canvas {
 /// The function table of the module `cairo`.
 struct CanvasLibrary {
   static constexpr ModuleName module{"cairo", "draws pictures of electron tracks",
-                                     "Cairo (Debian: libcairo2)", 100};
+                                     "Cairo (Debian: libcairo2)", 100, "semsurf-io-image"};
   /// `extension` is ".png", ".svg" or ".pdf". `target` is the path to write to, `file` the name for
   /// messages.
   std::unique_ptr<Canvas> (*make_canvas)(const std::filesystem::path& target,

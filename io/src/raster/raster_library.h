@@ -10,7 +10,8 @@ namespace surf::io {
 /// OpenImageIO.
 struct RasterLibrary {
   static constexpr ModuleName module{"raster", "reads and writes EXR, TIFF and PNG files",
-                                     "OpenImageIO (Debian: libopenimageio2.4)", 700};
+                                     "OpenImageIO (Debian: libopenimageio2.4)", 700,
+                                     "semsurf-io-image"};
 
   decltype(&io::write_exr) write_exr;
   decltype(&io::write_tiff) write_tiff;

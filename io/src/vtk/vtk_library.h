@@ -12,7 +12,7 @@ namespace surf::io {
 struct VtkLibrary {
   static constexpr ModuleName module{"vtk", "writes VTI, VTP and VTM files",
                                      "VTK (Debian: paraview or libvtk9.1, as it was built with)",
-                                     100};
+                                     100, "semsurf-io-vtk"};
 
   decltype(&io::write_vti) write_vti;
   decltype(&io::vti_content) vti_content;

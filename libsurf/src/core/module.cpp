@@ -28,9 +28,10 @@ Linked linked[most_linked];
 int linked_count = 0;
 
 [[noreturn]] void refuse(const ModuleName& module, const std::string& reason) {
-  throw Unsupported(fmt::format("module {}", module.name),
-                    fmt::format("what {} cannot be used: {}", module.provides, reason),
-                    fmt::format("Install {} and semsurf with it", module.needs));
+  throw Unsupported(
+      fmt::format("module {}", module.name),
+      fmt::format("what {} cannot be used: {}", module.provides, reason),
+      fmt::format("Install {} and semsurf with it: package {}", module.needs, module.package));
 }
 
 // Set by `set_module_folder`; empty: relative to the program.

@@ -17,6 +17,7 @@ struct ModuleName {
   const char* needs;     ///< "VTK (Debian: libvtk9.1 ...)"
   /// Address space that loading needs, including the threads that the libraries start.
   int address_mb;
+  const char* package = "semsurf";  ///< of semsurf, that it is in (docs/packages.md)
 };
 
 /// Returns the module's table of functions, or null if the module was built for another version of
