@@ -18,6 +18,7 @@ void add_sweep(CLI::App& app, Action& action, const std::string& command_line);
 void add_former_join(CLI::App& app, Action& action);  // 'semsurf join', hidden
 void add_level(CLI::App& app, Action& action);
 void add_clean(CLI::App& app, Action& action);
+void add_survey(CLI::App& app, Action& action);
 void add_noise(CLI::App& app, Action& action);
 void add_mesh(CLI::App& app, Action& action);
 void add_erode(CLI::App& app, Action& action);

@@ -75,7 +75,7 @@ semsurf_debian_package(program semsurf ALSO program-debian SECTION science
 if(TARGET raster_file OR TARGET cairo_file)
   semsurf_debian_package(io-image semsurf-io-image SECTION science DEPENDS "semsurf ${same}"
     SUMMARY "image files for semsurf"
-    DESCRIPTION "Lets semsurf read and write TIFF, PNG, OpenEXR, JPEG and other images by\nOpenImageIO, and draw pictures of electron tracks by Cairo.")
+    DESCRIPTION "Lets semsurf read and write TIFF, PNG and OpenEXR by OpenImageIO, write\nfiles of HyperSpy by HDF5, and draw pictures of electron tracks by Cairo.")
 endif()
 if(TARGET vtk_file)
   semsurf_debian_package(io-vtk semsurf-io-vtk SECTION science DEPENDS "semsurf ${same}"

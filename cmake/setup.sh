@@ -14,7 +14,7 @@ packages=(
   libsuitesparse-dev libopenblas-pthread-dev                      # factoring sparse matrices
   libfftw3-dev libnlopt-dev                                       # registering images
   libhwy-dev                                                      # loops for each instruction set
-  libopenimageio-dev openimageio-tools                            # images
+  libopenimageio-dev openimageio-tools libhdf5-dev                # images
   libtomlplusplus-dev nlohmann-json3-dev libssl-dev               # scene files, records, hashes
   libcli11-dev libfmt-dev                                         # command line, text
   libpugixml-dev zlib1g-dev                                       # VTK's files, 3MF
@@ -38,6 +38,7 @@ programs=(
   chromium                                                        # what shows web pages and glTF
   lib3mf-dev                                                      # the 3MF Consortium's own reader
   gwyddion                                                        # AFM formats that only it knows
+  python3-hyperspy                                                # what reads .hspy
   g++-aarch64-linux-gnu clang qemu-user                           # AArch64
   dpkg-dev mmdebstrap lintian                                     # packages, and a clean system to try them in
 )

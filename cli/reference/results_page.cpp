@@ -95,6 +95,31 @@ const Entries& sidecar_keys() {
   return all;
 }
 
+const Entries& info_keys() {
+  static const Entries all{
+      {"file, kind", "path; `mesh`, `image`, `SEM image`, `heights`, `model` or `scene`"},
+      {"width, height", "pixels, or samples; of a scene those of its scan"},
+      {"pitch_x_nm, pitch_y_nm", "distance of pixels; null where the file does not say"},
+      {"origin_nm", "centre of an image's lower-left pixel"},
+      {"channels",
+       "of images and heights: `name`, `unit`, `lowest`, `highest`, `mean`, `not_finite`; of "
+       "heights `is_height`, `lowest_nm`, `highest_nm`, `mean_nm`, `holes`"},
+      {"levels, level_of_values", "sizes of a pyramid, and which of them the values are of"},
+      {"format, instrument, energy_ev, tilt_deg, working_distance_nm, detector, bits, "
+       "databar_rows, "
+       "pixel_from",
+       "of a microscope's image; null where it does not say"},
+      {"triangles, vertices, components, closed, area_nm2, volume_nm3, bounds_nm, faults, bodies, "
+       "scalars, tracks",
+       "of a mesh; the volume is null where it is not closed"},
+      {"material, energy_ev, pixel_nm, spot_nm, surfaces, residuals, held_out_residuals",
+       "what a model is for (0: any), what it was trained on, and how far it is off"},
+      {"title, bounds_nm, bodies, substrate, centre_nm, detectors, electrons, physics",
+       "of a scene, as it will be simulated"},
+      {"notes, warnings, metadata", "what reading it said, and what the file says of itself"}};
+  return all;
+}
+
 }  // namespace
 
 Entries image_channels() {
@@ -192,7 +217,12 @@ std::string results_page() {
          "It holds what may "
          "differ from run to run, "
          "as times, beside what the images hold.\n\n" +
-         entries("Key", sidecar_keys());
+         entries("Key", sidecar_keys()) +
+         "\n## `semsurf info --json`\n\nA list of one object per file that can be read, in their "
+         "order. Of the others the message says why. "
+         "`semsurf --version --json` prints the version, those of libraries, and the instruction "
+         "set.\n\n" +
+         entries("Key", info_keys());
 }
 
 }  // namespace surf::cli::reference

@@ -21,7 +21,7 @@ from ._errors import Doubt, Error, FileError, Interrupted, InvalidInput, UsageEr
 from ._place import MODULES as _MODULES
 from ._results import Findings
 from ._semsurf import (HeightField, Image, Mesh, Tip, __version__, certainty, check_mesh, clean, close,
-                       dilate, erode, estimate, level, materials, mesh_heights, noise, noise_sem, open,
+                       dilate, erode, estimate, info, level, materials, mesh_heights, noise, noise_sem, open,
                        predict, profile, read_heights, read_image, read_mesh, read_sem_image, read_tip,
                        reconstruct, register, repair_mesh, simplify, simulate, tip, train,
                        write_heights, write_image, write_mesh, write_tip)

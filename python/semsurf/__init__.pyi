@@ -210,6 +210,17 @@ def read_mesh(
     """Read a mesh: STL, OBJ, PLY, OFF, glTF, 3MF, VTP, VTM."""
 
 
+def info(
+    path: PathLike,
+    *,
+    unit: str | None = None,
+    override_unit: bool = False,
+    material: str | None = None,
+    materials: PathLike | Sequence[PathLike] | None = None,
+) -> Findings:
+    """What is in a mesh, an image, a scan, a model or a scene file."""
+
+
 def write_mesh(
     path: PathLike,
     mesh: Mesh,

@@ -9,6 +9,7 @@
 #include "surf/io/sem_file.h"
 #include "surf/io/sim/specimen_request.h"
 #include "surf/io/tip_file.h"
+#include "surf/workflow/describe_file.h"
 
 namespace surf::python {
 namespace {
@@ -127,6 +128,20 @@ py::object write_mesh(const Call& call) {
   return py::none();
 }
 
+py::object info(const Call& call) {
+  const auto request = call.told<io::SpecimenRequest>();
+  const auto materials = call.told<io::MaterialChoice>();
+  const std::string path = path_of(call["path"]);
+  std::string text;
+  {
+    const py::gil_scoped_release unlocked;
+    text = workflow::describe_file(path, {request.mesh_unit_nm, request.override_unit},
+                                   {materials.files.begin(), materials.files.end()});
+  }
+  const py::object findings = py::module_::import("semsurf._results").attr("Findings");
+  return py::module_::import("json").attr("loads")(text, py::arg("object_hook") = findings);
+}
+
 Function reader(const char* name, const char* summary, const char* type, const char* result) {
   Function f{.name = name, .summary = summary, .arguments = {file_to_read}};
   f.result_type = type, f.result = result;
@@ -176,8 +191,9 @@ void add_files(py::module_& module) {
          reader("read_image", "Read an image with all its channels: EXR, TIFF, PNG, VTI.", "Image",
                 "The image."),
          read_image);
-  Function to_image = writer("write_image", "Write an image to a file.", ".exr .tif .png .vti",
-                             {"image", "Image | ArrayLike", "The image."});
+  Function to_image =
+      writer("write_image", "Write an image to a file.", ".exr .tif .png .vti .hspy",
+             {"image", "Image | ArrayLike", "The image."});
   to_image.arguments.push_back(
       {"channel", "str", "The channel that a PNG shows; the first if it is not given."});
   to_image.arguments.push_back(record);
@@ -195,6 +211,13 @@ void add_files(py::module_& module) {
                 "The bodies of the file, joined.")
              .takes<io::SpecimenRequest>({}, all_but_units),
          read_mesh);
+  define(module,
+         reader("info", "What is in a mesh, an image, a scan, a model or a scene file.", "Findings",
+                "Numbers with their units in their names: `kind`, sizes, channels, bounds, and "
+                "what the file says of itself, `metadata`. `semsurf info --json` prints the same.")
+             .takes<io::SpecimenRequest>({}, all_but_units)
+             .takes<io::MaterialChoice>(),
+         info);
   std::vector<std::string> all_but_unit = all_but_units;
   all_but_unit.push_back("specimen.override_unit");
   define(module,

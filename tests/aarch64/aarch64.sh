@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Builds libsurf, mc_sim and their tests for AArch64 and runs them under qemu-user. Usage: aarch64.sh gcc|clang
+# Builds libsurf, mc_sim and their tests for AArch64 and runs them under qemu-user.
+# Usage: aarch64.sh gcc|clang [vectors]     vectors: compile the sources of vector code alone, and run nothing
 # Exit code 77: this machine lacks what it takes. docs/testing.md says what is run.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -28,6 +29,17 @@ step "arm64 packages"
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 cmake --preset "$preset" >"$log" 2>&1 || { cat "$log"; exit 1; }
+if [[ ${2:-} == vectors ]]; then
+  # Sources with loops for each instruction set, and those that hold such loops for others.
+  mapfile -t sources < <(grep -lE 'each_target\.h|_loops-inl\.h' -r libsurf/src mc_sim/src --include='*.cpp')
+  folder=$(sed -n 's/^-- Build files have been written to: //p' "$log")
+  mapfile -t objects < <(printf '/%s.o\n' "${sources[@]#*/}" |
+                         grep -F -f - <(ninja -C "$folder" -t targets all | sed -n 's/^\(.*\.o\): .*/\1/p'))
+  ((${#objects[@]} >= ${#sources[@]})) || { echo "of ${#sources[@]} sources ${#objects[@]} are built"; exit 1; }
+  ninja -C "$folder" "${objects[@]}" >"$log" 2>&1 || { grep -v '^\[' "$log"; exit 1; }
+  step "${#objects[@]} sources of vector code"
+  exit
+fi
 cmake --build --preset "$preset" >"$log" 2>&1 || { grep -v '^\[' "$log"; exit 1; }
 step "build"
 ctest --preset "$preset" --parallel "$(nproc)"

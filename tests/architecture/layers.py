@@ -84,6 +84,7 @@ THIRD_PARTY = [
     ("zlib.h", ["io/src/files/deflate.cpp", "io/src/vtk/vtk_data.cpp", "io/src/files/zip_file.cpp"]),
     ("tiny_gltf.h", ["io/src/gltf/write_gltf.cpp"]),
     ("cairo*.h", ["io/src/pictures/canvas.cpp"]),
+    ("hdf5.h", ["io/src/hdf5/hspy_write.cpp"]),
     ("xxhash.h", ["io/src/files/cache_entry.cpp"]),
     ("toml++/*", ["io/src/sim/*"]),
     ("nlohmann/*", ["workflow/src/*", "io/src/*"]),

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Readers and writers: what is written is read again, also by the program."""
+import json
+import subprocess
+
 import numpy
 import pytest
 
 import semsurf
-from conftest import bumps
+from conftest import PROGRAM, bumps
 
 
 @pytest.mark.parametrize("suffix, digits", [(".gsf", 5), (".tif", 5), (".txt", 15), (".vti", 5)])
@@ -78,3 +81,18 @@ def test_files_that_are_not_there(tmp_path):
         assert isinstance(error.value, OSError) and "nothing" in str(error.value)
     with pytest.raises(semsurf.UsageError):
         semsurf.write_heights(tmp_path / "heights.doc", bumps())
+
+
+def test_info_says_what_files_hold(tmp_path, heights):
+    semsurf.write_heights(tmp_path / "scan.gsf", heights)
+    found = semsurf.info(tmp_path / "scan.gsf")
+    assert found.kind == "heights" and (found.width, found.height) == heights.heights.shape[::-1]
+    assert found.channels[0].highest_nm == pytest.approx(heights.heights.max(), rel=1e-5)
+    with pytest.raises(semsurf.FileError, match="nowhere.exr"):
+        semsurf.info(tmp_path / "nowhere.exr")
+
+
+def test_info_is_what_the_program_prints(samples):
+    for name in ("pyramid.stl", "mesa80.toml", "si-1keV-10nm.json"):
+        printed = subprocess.run([PROGRAM, "info", "--json", samples / name], capture_output=True, check=True, text=True)
+        assert json.loads(printed.stdout) == [semsurf.info(samples / name)]

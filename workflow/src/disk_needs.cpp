@@ -62,10 +62,10 @@ std::vector<DiskNeed> disk_needs(const ResolvedJob& job, const mc::Scan& scan,
     const io::ImageSize size{scan.width, scan.height};
     const bool tiles = raster && io::in_tiles(job.layout, size);
     const double bytes =
-        extension == ".png" ? pixels
-        : extension == ".vti"
-            ? 4.0 / 3 * 4 * pixels * channels  // as text
-            : 4 * static_cast<double>(io::stored_pixels(job.layout, size)) * channels;
+        extension == ".png"   ? pixels
+        : extension == ".vti" ? 4.0 / 3 * 4 * pixels * channels  // as text
+        : raster ? 4 * static_cast<double>(io::stored_pixels(job.layout, size)) * channels
+                 : 4 * pixels * channels;
     needs.push_back({output.filename().string(), folder_of(output), bytes, true});
     if (tiles) pyramid = std::max(pyramid, 4 * pixels * channels / 3);
   }

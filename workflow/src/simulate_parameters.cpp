@@ -98,7 +98,7 @@ void describe(ParameterVisitor& visit, SimulateJob& job) {
          .help = "Layout of EXR and TIFF: rows, or tiles with smaller sizes for viewing",
          .otherwise = "auto: tiles above 64 million pixels",
          .level = Level::advanced});
-  describe_images(visit, job.outputs, "Image to write: .exr .tif .png .vti");
+  describe_images(visit, job.outputs, "Image to write: .exr .tif .png .vti .hspy");
   describe(visit, job.checkpoint);
 }
 

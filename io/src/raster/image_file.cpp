@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "grey_picture.h"
+#include "hdf5/hdf5_library.h"
 #include "image_formats.h"
 #include "pyramid.h"
 #include "surf/core/error.h"
@@ -19,7 +20,7 @@
 namespace surf::io {
 namespace {
 
-enum class Format { none, exr, tiff, png, vti };
+enum class Format { none, exr, tiff, png, vti, hspy };
 
 Format format_of(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -29,6 +30,7 @@ Format format_of(const std::filesystem::path& path) {
   if (extension == ".tif" || extension == ".tiff") return Format::tiff;
   if (extension == ".png") return Format::png;
   if (extension == ".vti") return Format::vti;
+  if (extension == ".hspy") return Format::hspy;
   return Format::none;
 }
 
@@ -40,10 +42,19 @@ Format known_format_of(const std::filesystem::path& path, Use use = Use::write) 
     throw UsageError(
         path.string(),
         fmt::format("'{}' is not an image format known here", path.extension().string()),
-        "Use .exr, .tif, .png or .vti");
+        "Use .exr, .tif, .png, .vti or .hspy");
   }
-  if (format != Format::vti) require_raster(path.string());
-  else if (use == Use::write) require_vtk(path.string());
+  if (format == Format::hspy) {
+    if (use == Use::read)
+      throw UsageError(
+          path.string(), "files of HyperSpy are written, not read",
+          "Read it in Python by hyperspy.api.load, or keep the image as .exr or .tif, too");
+    hdf5_library(path.string());
+  } else if (format != Format::vti) {
+    require_raster(path.string());
+  } else if (use == Use::write) {
+    require_vtk(path.string());
+  }
   return format;
 }
 
@@ -145,6 +156,9 @@ void write_image(const std::filesystem::path& path, const ImageRows& rows,
         break;
       case Format::vti:
         write_vti_at_once(temporary, file, rows);
+        break;
+      case Format::hspy:
+        hdf5_library(file).write_hspy(temporary, file, to_image(rows));
         break;
       case Format::none:
         break;

@@ -17,7 +17,8 @@ FileKind kind_of(const std::filesystem::path& path);
 
 /// What is in a file as JSON, an object: `file`, `kind` ("scene", "model", "heights", "SEM image",
 /// "image", "mesh"), then numbers with their units in their names, and what the file says of itself
-/// as `metadata`. docs/reference/info.md lists the fields. Throws FileError, InvalidInput.
+/// as `metadata`. docs/reference/channels_and_metadata.md lists
+/// the fields. Throws FileError, InvalidInput.
 std::string describe_file(const std::filesystem::path& path, const io::MeshUnit& unit = {},
                           const std::vector<std::filesystem::path>& material_files = {});
 
