@@ -65,11 +65,17 @@ std::optional<double> scatter(const std::vector<double>& values) {
   return std::sqrt(squares / double(values.size() - 1));
 }
 
-std::optional<double> radius_of(const Tip& tip) {
+/// A blind tip's end is flat by as much as its threshold: fitted down to ten times that, or as deep
+/// as a fit takes anyway.
+std::optional<double> radius_of(const Tip& tip, double threshold_nm) {
+  constexpr double thresholds = 10;
   try {
-    const double radius = measure_tip(tip).radius_nm;
-    return std::isfinite(radius) ? std::optional(radius) : std::nullopt;
-  } catch (const InvalidInput&) {  // a flat end, or too few samples
+    TipMeasures m = measure_tip(tip);
+    if (thresholds * threshold_nm > m.fit_depth_nm)
+      m = measure_tip(tip, {.fit_depth_nm = thresholds * threshold_nm});
+    const double radius = m.radius_nm;
+    return std::isfinite(radius) && radius > 0 ? std::optional(radius) : std::nullopt;
+  } catch (const InvalidInput&) {  // too few samples
     return std::nullopt;
   }
 }
@@ -92,9 +98,10 @@ void survey_tip(const HeightField& levelled, const std::vector<double>& sorted,
   if (noise && !asked.noise) asked.noise = noise;
   const TipResult found = find_tip({levelled}, asked, reporter);
   if (!found.tip.doubt.empty()) add_problem(out, found.tip.doubt);
-  out.tip_radius_nm = radius_of(found.tip);
+  const double threshold_nm = found.used.threshold_nm.value_or(0);
+  out.tip_radius_nm = radius_of(found.tip, threshold_nm);
   if (!out.tip_radius_nm) {
-    add_problem(out, "the tip's end is flat: no feature is sharp enough to show it");
+    add_problem(out, "the tip's end is flat or hollow: no feature is sharp enough to show it");
     return;
   }
   if (const auto angle = measure_tip(found.tip).half_angle_rad)
@@ -106,7 +113,8 @@ void survey_tip(const HeightField& levelled, const std::vector<double>& sorted,
     for (int draw = 0; draw < parameters.draws; ++draw) {
       reporter.watch().check();
       const HeightField noisy = with_noise(levelled, *noise, asked.seed + std::uint64_t(draw) + 1);
-      if (const auto radius = radius_of(find_tip({noisy}, again, {}).tip)) radii.push_back(*radius);
+      if (const auto radius = radius_of(find_tip({noisy}, again, {}).tip, threshold_nm))
+        radii.push_back(*radius);
     }
     out.tip_radius_error_nm = scatter(radii);
   }
@@ -117,7 +125,9 @@ void survey_tip(const HeightField& levelled, const std::vector<double>& sorted,
   const HeightField eroded = morphology(MorphologyOperation::erode, levelled,
                                         tip_for(found.tip, levelled, "tip"), eroding, {});
   const Island wide = above(levelled, half_nm), narrow = above(eroded, half_nm);
-  if (wide.border_nm > 0) out.broadening_nm = (wide.area_nm2 - narrow.area_nm2) / wide.border_nm;
+  // Grown by d, an area gets d times the mean of its old and new border (Steiner).
+  if (wide.border_nm > 0)
+    out.broadening_nm = 2 * (wide.area_nm2 - narrow.area_nm2) / (wide.border_nm + narrow.border_nm);
 }
 
 std::string field_of(const std::optional<double>& value) {

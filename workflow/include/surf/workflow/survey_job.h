@@ -38,7 +38,7 @@ struct SurveyedScan {
   /// how far the radius can be reproduced, not how much sharper the tip may be.
   std::optional<double> tip_radius_nm, tip_radius_error_nm, tip_half_angle_deg;
   /// What the tip adds to features on each side, at half of the relief: the area that scan and
-  /// eroded scan differ by, over the length of the scan's edge there.
+  /// eroded scan differ by, over the mean length of their edges there.
   std::optional<double> broadening_nm;
   std::string problem;  ///< why the tip is not to be trusted or not known; empty: no known reason
 };
