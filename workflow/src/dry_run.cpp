@@ -47,7 +47,8 @@ std::vector<MemoryNeed> memory_of_results(const ResolvedJob& job, const mc::Scan
     std::string extension = output.extension().string();
     std::ranges::transform(extension, extension.begin(),
                            [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (extension == ".vti" || extension == ".hspy") writing = std::max(writing, 8 * channels * pixels);
+    if (extension == ".vti" || extension == ".hspy")
+      writing = std::max(writing, 8 * channels * pixels);
   }
   // Larger ones are in scratch files (io/src/raster/pyramid.cpp).
   constexpr double most_of_a_level = 256e6 * 1.05;
