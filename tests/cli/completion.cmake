@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What the program tells the shells; their scripts parse, where the shell is there, and bash's completes.
-semsurf_cli_test(complete.commands ARGS __complete s STDOUT "^:nothing\nsimulate\tSecondary-.*\nsweep\t.*\nsample\t.*\n$")
+semsurf_cli_test(complete.commands ARGS __complete s STDOUT "^:nothing\nsimulate\tSecondary-.*\nsweep\t.*\nsurvey\t.*\nsample\t.*\n$")
 semsurf_cli_test(complete.options ARGS __complete materials --m STDOUT "^:nothing\n--materials\tFile of your own.*\n$")
 semsurf_cli_test(complete.files ARGS __complete info x STDOUT "^:files\n$")
 semsurf_cli_test(complete.folders ARGS __complete simulate --cache o STDOUT "^:folders\noff\n$")

@@ -42,9 +42,9 @@ semsurf_cli_test(info.mesh ARGS info cube.off open.off --unit um
 semsurf_cli_test(survey.table ARGS survey scan.txt --no-tip -o table.csv STDOUT "roughness .*, noise " "written +table.csv" WRITES table.csv)
 semsurf_cli_test(survey.all_but_the_bad EXIT 3 ARGS survey nowhere.spm scan.txt --no-tip STDOUT "scan.txt: roughness" STDERR "nowhere.spm")
 semsurf_cli_test(info.json ARGS info --json cube.off scan.txt
-  STDOUT "^\\[\n" "\"kind\": \"mesh\"" "\"triangles\": 12" "\"kind\": \"heights\"" "\\]\n$")
+  STDOUT "^.\n.\n" "\"kind\": \"mesh\"" "\"triangles\": 12" "\"kind\": \"heights\"" "\n.\n.\n$")
 semsurf_cli_test(info.json_all_but_the_bad EXIT 3 ARGS info --json nowhere.stl cube.off
-  STDOUT "^\\[\n\\{" "\"kind\": \"mesh\"" "\\}\n\\]\n$" STDERR "nowhere.stl")
+  STDOUT "^.\n.\n" "\"kind\": \"mesh\"" "\n.\n.\n$" STDERR "nowhere.stl")
 semsurf_cli_test(version.json ARGS --version --json STDOUT "\"semsurf\": \"[0-9.]+\"" "\"instruction_set\": ")
 semsurf_cli_test(info.mesh_faults ARGS info open.off
   STDOUT "open: [0-9]+ boundary edge.* near \\(" "try +semsurf mesh open.off --repair -o open_repaired.ply")

@@ -153,8 +153,9 @@ std::vector<Default> defaults() {
 /// Numbers that no struct holds: of files that do not say, of a choice made where it is used, and
 /// no defaults at all.
 std::vector<Default> others() {
-  const std::vector<std::string> scans{"level", "clean", "noise scan", "erode", "dilate",
-                                       "open",  "close", "certainty",  "tip",   "compare"};
+  const std::vector<std::string> scans{"level",  "clean",   "noise scan", "erode",
+                                       "dilate", "open",    "close",      "certainty",
+                                       "tip",    "compare", "survey"};
   const std::vector<std::string> chains{"register", "reconstruct"},
       libraries{"library build", "library plot"};
   return {
@@ -223,8 +224,8 @@ TEST(HelpDefaults, EveryCommandIsLookedAt) {
       commands_of({}),
       testing::ElementsAre("simulate", "sweep", "train", "predict", "estimate", "profile", "level",
                            "clean", "noise", "tip", "erode", "dilate", "open", "close", "certainty",
-                           "sample", "register", "calibrate", "reconstruct", "compare", "info",
-                           "view", "mesh", "materials", "library", "chart", "completion"));
+                           "survey", "sample", "register", "calibrate", "reconstruct", "compare",
+                           "info", "view", "mesh", "materials", "library", "chart", "completion"));
   EXPECT_THAT(commands_of({"sweep"}), testing::ElementsAre("join"));
   EXPECT_THAT(commands_of({"library"}), testing::ElementsAre("list", "build", "plot", "remove"));
   const auto options = options_of({"reconstruct"});
