@@ -72,15 +72,18 @@ print("python:", semsurf.__version__, os.path.dirname(semsurf.__file__))
 PY
 fi
 if command -v paraview-semsurf >/dev/null; then
+  sh -n "$(command -v paraview-semsurf)"
   PV_PLUGIN_PATH=/usr/lib/semsurf_paraview pvpython -c '
-from paraview.simple import *
-import paraview.servermanager as sm
-assert hasattr(sm.sources, "SemsurfSimulate") or any("emsurf" in n for n in dir(sm.sources) + dir(sm.filters)), "no plugin"
+from paraview import simple
+assert hasattr(simple, "SimulateSEM"), "no plugin"
 print("ParaView: the plugin is there")'
 fi
 IN
 sources=$(find /etc/apt/sources.list.d -name '*.sources' -o -name '*.list')
 [[ ! -s /etc/apt/sources.list ]] || sources+=" /etc/apt/sources.list"
+# pvpython asks ParaView without a window.
+also=openmpi-bin
+[[ ! -e $build/lib/semsurf_paraview ]] || also+=" python3-paraview"
 install="apt-get install -qq -y --no-install-recommends"
 export DEBIAN_FRONTEND=noninteractive
 # shellcheck disable=SC2086
@@ -88,7 +91,7 @@ mmdebstrap --variant=apt --mode=root --aptopt='Acquire::Languages "none"' --dpkg
   --customize-hook="mkdir \"\$1/packages\" && cp $work/debs/*.deb $work/*.sh \"\$1/packages\"" \
   --customize-hook="chroot \"\$1\" sh -c '$install /packages/semsurf_*.deb'" \
   --customize-hook="chroot \"\$1\" sh /packages/program.sh" \
-  --customize-hook="chroot \"\$1\" sh -c '$install /packages/*.deb openmpi-bin ${PACKAGES_ALSO:-}'" \
+  --customize-hook="chroot \"\$1\" sh -c '$install /packages/*.deb $also'" \
   --customize-hook="chroot \"\$1\" sh /packages/all.sh" \
   bookworm /dev/null $sources >"$work/root.log" 2>&1 || { tail -60 "$work/root.log"; fail "they do not work in a clean system"; }
 grep -E "^(semsurf [0-9]|python:|ParaView:)" "$work/root.log" || true
