@@ -48,19 +48,19 @@ if semsurf simulate /usr/share/semsurf/samples/flat.toml --size 8x8 --electrons 
   echo "an image was written without its package"; exit 1
 fi
 grep -q semsurf-io-image error.txt || { cat error.txt; exit 1; }
-man_page=/usr/share/man/man1/semsurf.1.gz
-[ ! -e "$man_page" ] || gzip -t "$man_page"
+gzip -t /usr/share/man/man1/semsurf.1.gz
 IN
 cat >"$work/all.sh" <<'IN'
 set -eu
 cd /tmp
 samples=/usr/share/semsurf/samples
 semsurf simulate $samples/mesa80.toml --size 16x16 --electrons 20 --seed 7 -o program.exr -o program.vti -o program.png
-semsurf sample pads -o pads --size 128x48 --electrons 20 --model $samples/si-1keV-10nm.json >/dev/null 2>&1 || true
+for module in /usr/lib/semsurf/*.so; do
+  if ldd "$module" | grep "not found"; then echo "$module lacks a library"; exit 1; fi
+done
 [ ! -e /usr/lib/semsurf/mpi.so ] ||
   mpirun --allow-run-as-root --oversubscribe -n 2 semsurf simulate $samples/mesa80.toml --size 16x16 --electrons 20 \
     --seed 7 -o team.exr
-[ ! -e team.exr ] || semsurf info --json program.exr team.exr >both.json
 if [ -e /usr/lib/python3/dist-packages/semsurf/_place.py ]; then
   python3 - <<'PY'
 import os, semsurf
@@ -68,6 +68,8 @@ image = semsurf.simulate("/usr/share/semsurf/samples/mesa80.toml", size="16x16",
 semsurf.write_image("python.exr", image)
 program = semsurf.read_image("program.exr")
 assert (program["SE"] == image["SE"]).all()
+if os.path.exists("team.exr"):
+    assert (semsurf.read_image("team.exr")["SE"] == image["SE"]).all()
 print("python:", semsurf.__version__, os.path.dirname(semsurf.__file__))
 PY
 fi

@@ -95,6 +95,7 @@ TEST(Survey, FoldersAreTheirScansByName) {
   for (const char* name : {"b.gsf", "a.gsf"})
     io::write_height_field(folder.path() / name, pillars());
   io::write_text(folder.path() / "notes.md", "no scan");
+  io::write_text(folder.path() / "notes.txt", "no scan either");
   EXPECT_THAT(scans_of({folder.path(), "else.spm"}),
               testing::ElementsAre(folder.path() / "a.gsf", folder.path() / "b.gsf", "else.spm"));
 }

@@ -142,6 +142,18 @@ std::string text_field(const std::string& text) {
   return out + "\"";
 }
 
+/// Of a folder's files. Text may be anything: it counts where numbers are in it.
+bool is_scan(const std::filesystem::path& path) {
+  if (io::has_scan_name(path)) return true;
+  if (!io::is_height_field_file(path)) return false;
+  if (path.extension() != ".txt") return true;
+  try {
+    return !io::height_channels(path).empty();
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 void describe(ParameterVisitor& visit, SurveyParameters& p) {
@@ -205,9 +217,7 @@ std::vector<std::filesystem::path> scans_of(const std::vector<std::filesystem::p
     }
     std::vector<std::filesystem::path> inside;
     for (const auto& entry : std::filesystem::directory_iterator(path))
-      if (entry.is_regular_file() &&
-          (io::is_height_field_file(entry.path()) || io::has_scan_name(entry.path())))
-        inside.push_back(entry.path());
+      if (entry.is_regular_file() && is_scan(entry.path())) inside.push_back(entry.path());
     if (inside.empty())
       throw FileError(path.string(), "no scan is in this folder",
                       "Give the scans themselves: images of heights are not sought in folders");

@@ -64,15 +64,11 @@ TEST(NoiseFields, HaveTheCorrelationThatIsAskedFor) {
 }
 
 TEST(NoiseFields, OfACorrelationThatNoNoiseHasScatterAsItsMeansDo) {
-  // Cut off where it is small, as estimates are: its spectrum is partly below 0.
-  constexpr int reach = 5, size = 9, each = 200;
-  NoiseCorrelation cut{Grid<double>(2 * reach + 1, 2 * reach + 1)};
-  for (int dy = -reach; dy <= reach; ++dy)
-    for (int dx = -reach; dx <= reach; ++dx) {
-      const double c = std::exp(-(dx * dx + dy * dy) / 9.0);
-      cut.by_distance(reach + dx, reach + dy) = c > 0.2 ? c : 0;
-    }
-  const NoiseFields fields(size, size, cut);
+  // As it is estimated from a small view: its spectrum is partly below 0.
+  const NoiseCorrelation estimated =
+      estimate_correlation(test::blurred_noise(72, 72, 1.5, 8), {}, 14);
+  constexpr int size = 9, each = 1000;
+  const NoiseFields fields(size, size, estimated);
   double variance = 0, means = 0;
   for (std::uint64_t i = 0; i < each; ++i)
     for (const Grid<float>& f : fields.pair(3, i)) {
@@ -80,8 +76,8 @@ TEST(NoiseFields, OfACorrelationThatNoNoiseHasScatterAsItsMeansDo) {
       for (const float v : f.data()) sum += double(v), variance += double(v) * double(v);
       means += sum * sum;
     }
-  // 400 means: a standard error of 0.07.
-  EXPECT_NEAR(means / variance / cut.inflation(size), 1, 0.2);
+  // 2000 means: a standard error of 0.03.
+  EXPECT_NEAR(means / variance / estimated.inflation(size), 1, 0.1);
 }
 
 }  // namespace
