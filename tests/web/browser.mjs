@@ -56,10 +56,19 @@ async function open(url, { width = 1440, height = 900, theme = 'light', webgl = 
   return { page, seen };
 }
 
-const still = (page) => page.evaluate(() => new Promise((done) => {   // until nothing is drawn any more
-  let frames = -1;
-  const look = () => (window.semsurf.stage.frames === frames ? done() : (frames = window.semsurf.stage.frames, setTimeout(look, 300)));
-  look();
+// Until nothing is drawn any more and the picture is as large as its place, which a panel that opens makes smaller.
+const still = (page) => page.evaluate(() => new Promise((done) => {
+  const { stage } = window.semsurf, place = document.getElementById('view');
+  const frame = () => new Promise(requestAnimationFrame);
+  const look = async (frames) => {
+    await frame();
+    await new Promise((later) => setTimeout(later, 300));
+    await frame();
+    const fits = stage.size[0] === place.clientWidth && stage.size[1] === place.clientHeight;
+    if (fits && stage.frames === frames) done();
+    else look(stage.frames);
+  };
+  look(-1);
 }));
 const project = (page, x, y, z) => page.evaluate((...p) => {
   const box = document.getElementById('view').getBoundingClientRect();
@@ -99,10 +108,10 @@ async function read_point(page, x, y, z, what) {
 async function drag_section(page, from, to, f) {
   await page.click('#tool-section');
   await still(page);
-  const a = await project(page, ...from, f(...from)), b = await project(page, ...to, f(...to));
   // A browser that is short of time may drop moves, as a hand would then drag again.
   let section = null;
   for (let tries = 0; tries < 3 && !section; ++tries) {
+    const a = await project(page, ...from, f(...from)), b = await project(page, ...to, f(...to));
     await page.mouse.move(...a);
     await page.mouse.down();
     await page.mouse.move((a[0] + b[0]) / 2, (a[1] + b[1]) / 2, { steps: 4 });
