@@ -12,7 +12,6 @@
 #include "commands.h"
 #include "exit_codes.h"
 #include "job_reporter.h"
-#include "picture_input.h"
 #include "surf/core/error.h"
 #include "surf/io/files.h"
 #include "surf/io/height_field_file.h"
@@ -20,6 +19,7 @@
 #include "surf/io/model/calibration_file.h"
 #include "surf/io/model/model_file.h"
 #include "surf/workflow/calibrate_job.h"
+#include "surf/workflow/picture_input.h"
 #include "surf/workflow/predict_job.h"
 #include "surf/workflow/step_record.h"
 #include "terminal.h"
@@ -57,8 +57,9 @@ void write_folded(const std::string& path, TrainedModel trained, const Calibrati
 }
 
 CalibrateInput read_input(const CalibrateFiles& o) {
-  const FileChannel file = parse_file_channel(o.image);
-  const io::WebImage picture = read_picture(file, {o.reading.pixel_x_nm, o.reading.pixel_y_nm});
+  const workflow::FileChannel file = workflow::parse_file_channel(o.image);
+  const io::WebImage picture =
+      workflow::read_picture(file, {o.reading.pixel_x_nm, o.reading.pixel_y_nm});
   if (!picture.has_scale)
     throw InvalidInput(o.image, "it does not say how large its pixels are",
                        "Give their size with --pixel-size");
@@ -116,7 +117,7 @@ void print_fit(const Calibration& c) {
 }
 
 std::map<std::string, std::string> record(const CalibrateFiles& o, const CalibrateParameters& p) {
-  std::vector<std::filesystem::path> inputs{parse_file_channel(o.image).file};
+  std::vector<std::filesystem::path> inputs{workflow::parse_file_channel(o.image).file};
   if (o.model) inputs.emplace_back(o.heights);
   for (const auto& input : {o.images, o.model, o.masks.use, o.masks.exclude})
     if (input) inputs.emplace_back(*input);

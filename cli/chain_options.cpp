@@ -9,7 +9,6 @@
 
 #include "afm_options.h"
 #include "common_options.h"
-#include "picture_input.h"
 #include "sem_input.h"
 #include "surf/core/error.h"
 #include "surf/core/some_parameters.h"
@@ -17,6 +16,7 @@
 #include "surf/io/cache.h"
 #include "surf/io/landmarks_file.h"
 #include "surf/io/tip_file.h"
+#include "surf/workflow/picture_input.h"
 #include "surf/workflow/tip_job.h"
 #include "terminal.h"
 
@@ -110,7 +110,7 @@ void take_afm(const ChainOptions& o, const ChainFiles& files, workflow::AfmInput
 }
 
 void take_sem(const ChainOptions& o, const std::string& file, workflow::SemInput& sem) {
-  const FileChannel name = parse_file_channel(file);
+  const workflow::FileChannel name = workflow::parse_file_channel(file);
   if (!name.channel.empty()) sem.reading.channel = name.channel;
   sem.image = read_sem_input(name.file, sem.reading, o.quiet);
   sem.file = name.file;

@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "common_options.h"
 #include "job_reporter.h"
+#include "scan_batch.h"
 #include "surf/core/error.h"
 #include "surf/workflow/clean_job.h"
 #include "terminal.h"
@@ -23,18 +24,18 @@ At the border of the image and near holes the neighbourhood is what there is of 
 Examples:
   semsurf clean scan.gsf --spikes 3:0.5nm -o clean.gsf
       only heights that are more than 0.5 nm off the median of the 3 x 3 around them become it
+  semsurf clean scans/ --median 3 -o clean/             each to clean/NAME.gsf
   semsurf clean scan.gwy --median 5 --disc -o smooth.gsf
   semsurf clean scan.gsf --closing 5 --fill-holes -o filled.tif)";
 
 struct Options {
   BoundParameters bound;
-  std::string scan;
+  std::vector<std::string> scans;
   std::optional<std::string> output;
   bool quiet = false;
 };
 
 CleanParameters parameters_of(const Options& o) {
-  if (o.scan.empty()) throw UsageError("clean", "no scan is given", "Name a file to read");
   if (!o.output) throw UsageError("--output", "no output file is given", "Add -o clean.gsf");
   CleanParameters p;
   o.bound.apply(p);
@@ -54,23 +55,28 @@ void print_summary(const char* what, const CleanSummary& s, const HeightField& f
         s.holes ? fmt::format(", {} holes left", s.holes) : "");
 }
 
-int work(const Options& o) {
-  const CleanParameters parameters = parameters_of(o);
-  io::HeightReadOptions reading;
-  o.bound.apply(reading);
-  io::check_height_field_target(*o.output);
-  const HeightField scan = read_scan(o.scan, reading, o.quiet).field;
+void clean(const Options& o, const CleanParameters& parameters,
+           const io::HeightReadOptions& reading, const BatchStep& file) {
+  const HeightField scan = read_scan(file.scan, reading, o.quiet).field;
   const workflow::CleanResult cleaned = workflow::clean(scan, parameters, JobReporter(o.quiet));
   if (!o.quiet) {
+    if (file.one_of_many) print("{}\n", file.scan);
     if (cleaned.spikes) print_summary("spikes", *cleaned.spikes, scan);
     if (cleaned.median) print_summary("median", *cleaned.median, scan);
     if (cleaned.closing) print_summary("closing", *cleaned.closing, scan);
   }
   io::write_height_field(
-      *o.output, cleaned.field,
-      workflow::step_record("clean", workflow::records_of(cleaned.used, reading), {o.scan}));
-  if (!o.quiet) print("{:<10} {}\n", "written", *o.output);
-  return 0;
+      *file.output, cleaned.field,
+      workflow::step_record("clean", workflow::records_of(cleaned.used, reading), {file.scan}));
+  if (!o.quiet) print("{:<10} {}\n", "written", *file.output);
+}
+
+int work(const Options& o) {
+  const CleanParameters parameters = parameters_of(o);
+  io::HeightReadOptions reading;
+  o.bound.apply(reading);
+  return for_each_scan(batch_of(o.scans, o.output, "clean"),
+                       [&](const BatchStep& file) { clean(o, parameters, reading, file); });
 }
 
 }  // namespace
@@ -78,7 +84,7 @@ int work(const Options& o) {
 void add_clean(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("clean", "Take spikes, noise and pits out of an AFM scan");
-  add_scan_input(*sub, o->bound, o->scan);
+  add_scan_inputs(*sub, o->bound, o->scans);
   o->bound.add<CleanParameters>(*sub, "Cleaning");
   const char* output = "Output";
   add_surface_output(*sub, o->output);

@@ -10,7 +10,6 @@
 #include "common_options.h"
 #include "job_reporter.h"
 #include "mesh_parameters.h"
-#include "picture_input.h"
 #include "sem_input.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -19,6 +18,7 @@
 #include "surf/io/sim/materials.h"
 #include "surf/io/sim/specimen_request.h"
 #include "surf/workflow/compare_job.h"
+#include "surf/workflow/picture_input.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -48,7 +48,7 @@ struct Options {
 workflow::ComparedSurface read_surface(const std::string& file, io::HeightReadOptions reading,
                                        const io::MeshUnit& unit, bool quiet,
                                        std::filesystem::path& path) {
-  const FileChannel name = parse_file_channel(file);
+  const workflow::FileChannel name = workflow::parse_file_channel(file);
   if (!name.channel.empty()) reading.channel = name.channel;
   path = name.file;
   std::vector<std::string> notes;
@@ -62,7 +62,7 @@ workflow::ComparedSurface read_surface(const std::string& file, io::HeightReadOp
 void take_image(const Options& o, const io::MaterialChoice& material, workflow::CompareJob& job) {
   io::SemReadOptions reading;
   o.bound.apply(reading);
-  const FileChannel name = parse_file_channel(o.after);
+  const workflow::FileChannel name = workflow::parse_file_channel(o.after);
   if (!name.channel.empty()) reading.channel = name.channel;
   job.after_file = name.file;
   job.after = read_sem_input(name.file.string(), reading, o.quiet);

@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "common_options.h"
 #include "job_reporter.h"
+#include "scan_batch.h"
 #include "surf/afm/roughness.h"
 #include "surf/afm/step_height.h"
 #include "surf/core/error.h"
@@ -33,20 +34,20 @@ With --rows the image is levelled, then its rows by what lies on the plane (houg
 
 Examples:
   semsurf level scan.gwy -o flat.gsf
+  semsurf level scans/*.spm -o flat/                    each to flat/NAME.gsf
   semsurf level scan.spm --rows median --substrate-mask substrate.tif -o flat.gsf
   semsurf level scan.gwy --level-method polynomial --level-degree 2 --exclude particles.png -o flat.tif
   semsurf level flat.gsf --level-method none --step 0,0,400,900 600,0,1000,900)";
 
 struct Options {
   BoundParameters bound;
-  std::string scan;
+  std::vector<std::string> scans;
   std::optional<std::string> output, substrate_mask;
   std::vector<std::string> step;
   bool quiet = false;
 };
 
 void refuse_contradictions(const Options& o, const LevelParameters& p) {
-  if (o.scan.empty()) throw UsageError("level", "no scan is given", "Name a file to read");
   if (!o.output && o.step.empty())
     throw UsageError("--output", "no output file is given",
                      "Add -o flat.gsf, or --step to measure only");
@@ -92,20 +93,20 @@ void print_step(const HeightField& field, const std::vector<std::string>& step) 
       "step", s.height_nm, s.stderr_nm, format_length(s.residual_nm));
 }
 
-int work(const Options& o) {
+struct Levelling {
   LevelParameters parameters;
   io::HeightReadOptions reading;
   MaskInput masks;
-  o.bound.apply(parameters), o.bound.apply(reading), o.bound.apply(masks);
-  refuse_contradictions(o, parameters);
-  if (o.output) io::check_height_field_target(*o.output);
-  if (o.substrate_mask) io::check_image_target(*o.substrate_mask);
-  const HeightField scan = read_scan(o.scan, reading, o.quiet).field;
-  const Mask use = read_masks(masks, scan);
+};
+
+void level(const Options& o, const Levelling& l, const BatchStep& file) {
+  const HeightField scan = read_scan(file.scan, l.reading, o.quiet).field;
+  const Mask use = read_masks(l.masks, scan);
   const workflow::LevelResult levelled =
-      workflow::level(scan, parameters, use, JobReporter(o.quiet));
+      workflow::level(scan, l.parameters, use, JobReporter(o.quiet));
   const HeightField& field = levelled.field;
   if (!o.quiet) {
+    if (file.one_of_many) print("{}\n", file.scan);
     if (levelled.rows) print_rows(*levelled.rows);
     if (levelled.plane) print_plane(*levelled.plane);
     if (levelled.hough) print_inliers(*levelled.hough);
@@ -115,18 +116,30 @@ int work(const Options& o) {
       print_roughness("", "substrate", measure_roughness(field, levelled.substrate));
   }
   if (!o.step.empty()) print_step(field, o.step);
-  if (o.substrate_mask || o.output) {
-    std::vector<std::filesystem::path> inputs{o.scan};
-    for (const std::string& mask : masks.files()) inputs.emplace_back(mask);
-    const auto made =
-        workflow::step_record("level", workflow::records_of(parameters, reading, masks), inputs);
+  if (o.substrate_mask || file.output) {
+    std::vector<std::filesystem::path> inputs{file.scan};
+    for (const std::string& mask : l.masks.files()) inputs.emplace_back(mask);
+    const auto made = workflow::step_record(
+        "level", workflow::records_of(l.parameters, l.reading, l.masks), inputs);
     if (o.substrate_mask) write_mask(*o.substrate_mask, levelled.substrate, field, made);
-    if (o.output) io::write_height_field(*o.output, field, made);
+    if (file.output) io::write_height_field(*file.output, field, made);
   }
-  if (!o.quiet)
-    for (const auto& file : {o.substrate_mask, o.output})
-      if (file) print("{:<10} {}\n", "written", *file);
-  return 0;
+  if (o.quiet) return;
+  for (const auto& written : {o.substrate_mask, file.output})
+    if (written) print("{:<10} {}\n", "written", *written);
+  flush();
+}
+
+int work(const Options& o) {
+  Levelling l;
+  o.bound.apply(l.parameters), o.bound.apply(l.reading), o.bound.apply(l.masks);
+  refuse_contradictions(o, l.parameters);
+  const std::vector<BatchStep> batch = batch_of(o.scans, o.output, "level");
+  if (o.substrate_mask && batch.size() > 1)
+    throw UsageError("--substrate-mask", "one file does not hold the masks of several scans",
+                     "Leave it out, or level the scans one by one");
+  if (o.substrate_mask) io::check_image_target(*o.substrate_mask);
+  return for_each_scan(batch, [&](const BatchStep& file) { level(o, l, file); });
 }
 
 }  // namespace
@@ -134,7 +147,7 @@ int work(const Options& o) {
 void add_level(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand("level", "Level an AFM scan; roughness and step heights");
-  add_scan_input(*sub, o->bound, o->scan);
+  add_scan_inputs(*sub, o->bound, o->scans);
   o->bound.looks["level.method"] = {.name = "--level-method", .former = {"--method"}};
   o->bound.looks["level.degree"] = {.name = "--level-degree", .former = {"--degree"}};
   o->bound.looks["level.tolerance"] = {.name = "--level-tolerance", .former = {"--tolerance"}};

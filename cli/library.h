@@ -42,9 +42,6 @@ struct LibraryRequest {
 /// know is printed.
 LibraryRequest read_library_options(const LibraryOptions& options);
 
-/// "Si at 1 keV".
-std::string library_title(const std::string& material, double beam_energy_ev);
-
 // Each adds a subcommand of `semsurf library`.
 void add_library_list(CLI::App& library, Action& action);
 void add_library_build(CLI::App& library, Action& action);

@@ -11,6 +11,7 @@
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/cache.h"
+#include "surf/workflow/library_build.h"
 #include "surf/workflow/library_list.h"
 #include "terminal.h"
 
@@ -185,7 +186,7 @@ int remove(const BoundParameters& bound) {
   };
   for (const StoredLibrary& l : list.libraries) {
     if (!is_wanted(l, r)) continue;
-    print("{}, {} cascades, {}\n", library_title(l.name.material, l.name.beam_energy_ev),
+    print("{}, {} cascades, {}\n", workflow::library_title(l.name.material, l.name.beam_energy_ev),
           l.cascades, format_bytes(double(l.bytes)));
     drop(l.pages);
   }

@@ -30,10 +30,6 @@ void add_library_options(CLI::App& app, LibraryOptions& o) {
   add_quiet_flag(app, o.quiet);
 }
 
-std::string library_title(const std::string& material, double beam_energy_ev) {
-  return fmt::format("{} at {}", material, format_energy(beam_energy_ev));
-}
-
 LibraryRequest read_library_options(const LibraryOptions& o) {
   LibraryMaterials wanted;
   LibraryRequest request;

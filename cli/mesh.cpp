@@ -54,11 +54,11 @@ struct Plan {
   io::SurfaceFormat format;
   MeshParameters parameters;
   io::SpecimenRequest reading;
-  GivenPitch pixel;  ///< of pictures, and of scans where nothing else is said
+  workflow::GivenPitch pixel;  ///< of pictures, and of scans where nothing else is said
   MeshWork work;
   io::Magnification magnification;
-  std::vector<FileChannel> inputs, scalars;
-  std::optional<FileChannel> drape;
+  std::vector<workflow::FileChannel> inputs, scalars;
+  std::optional<workflow::FileChannel> drape;
 };
 
 void check_repair(const MeshParameters& p, const BoundParameters& bound) {
@@ -75,9 +75,9 @@ MeshWork make_work(const Options& o, const Plan& plan) {
   w.quiet = o.quiet;
   w.unit = mesh_unit_of(plan.reading);
   w.z_unit_nm = plan.reading.heights.z_unit_nm;
-  w.pitch = plan.reading.heights.pitch_x_nm
-                ? GivenPitch{plan.reading.heights.pitch_x_nm, plan.reading.heights.pitch_y_nm}
-                : plan.pixel;
+  w.pitch = plan.reading.heights.pitch_x_nm ? workflow::GivenPitch{plan.reading.heights.pitch_x_nm,
+                                                                   plan.reading.heights.pitch_y_nm}
+                                            : plan.pixel;
   w.scale = p.scale;
   check_repair(p, o.bound);
   if (p.repair) w.repair = p.mending;
@@ -130,16 +130,17 @@ Plan make_plan(const Options& o) {
   if (p.parameters.magnification) p.magnification.factor = *p.parameters.magnification;
   if (p.parameters.true_size) p.magnification.factor = 1;
   if (p.parameters.z_exaggeration) p.magnification.z_exaggeration = *p.parameters.z_exaggeration;
-  for (const std::string& input : o.inputs) p.inputs.push_back(parse_file_channel(input));
-  for (const std::string& input : o.scalars) p.scalars.push_back(parse_file_channel(input));
-  if (o.drape) p.drape = parse_file_channel(*o.drape);
+  for (const std::string& input : o.inputs) p.inputs.push_back(workflow::parse_file_channel(input));
+  for (const std::string& input : o.scalars)
+    p.scalars.push_back(workflow::parse_file_channel(input));
+  if (o.drape) p.drape = workflow::parse_file_channel(*o.drape);
   return p;
 }
 
 std::map<std::string, std::string> provenance(const Options& o, const Plan& p) {
   std::vector<std::string> files;
-  for (const FileChannel& f : p.inputs) files.push_back(f.file.string());
-  for (const FileChannel& f : p.scalars) files.push_back(f.file.string());
+  for (const workflow::FileChannel& f : p.inputs) files.push_back(f.file.string());
+  for (const workflow::FileChannel& f : p.scalars) files.push_back(f.file.string());
   if (p.drape) files.push_back(p.drape->file.string());
   if (o.tracks) files.push_back(*o.tracks);
   return workflow::step_record("mesh", workflow::records_of(p.reading, p.pixel, p.parameters),
@@ -147,7 +148,7 @@ std::map<std::string, std::string> provenance(const Options& o, const Plan& p) {
 }
 
 /// Maps of a scan's format may lie as the scan does.
-GivenPitch picture_pitch(const Plan& p) { return p.pixel.x_nm ? p.pixel : p.work.pitch; }
+workflow::GivenPitch picture_pitch(const Plan& p) { return p.pixel.x_nm ? p.pixel : p.work.pitch; }
 
 SurfaceScene make_scene(const Options& o, const Plan& p, Watched& watched) {
   SurfaceScene scene;
@@ -159,7 +160,8 @@ SurfaceScene make_scene(const Options& o, const Plan& p, Watched& watched) {
     watched.clear();
   }
   if (p.format.scalars && !p.parameters.plain) add_shape_scalars(scene, watched.watch());
-  for (const FileChannel& input : p.scalars) add_image_scalar(input, picture_pitch(p), scene);
+  for (const workflow::FileChannel& input : p.scalars)
+    add_image_scalar(input, picture_pitch(p), scene);
   if (p.drape) add_drape(*p.drape, picture_pitch(p), scene);
   if (!p.format.tracks) scene.tracks.clear();
   if (o.tracks) scene.tracks = io::read_tracks(*o.tracks);
@@ -222,7 +224,7 @@ int work(const Options& o) {
     print_written(files);
   }
   const bool of_meshes = std::ranges::all_of(
-      plan.inputs, [](const FileChannel& f) { return io::is_mesh_file(f.file); });
+      plan.inputs, [](const workflow::FileChannel& f) { return io::is_mesh_file(f.file); });
   if (!sound && !plan.parameters.repair && of_meshes) {
     print_warning("the mesh is not closed or not oriented. Try --repair");
   } else if (!sound && (plan.format.extension == ".stl" || plan.format.extension == ".3mf") &&
@@ -245,7 +247,7 @@ void add_mesh(CLI::App& app, Action& action) {
   o->bound.looks["scan.height_unit"].former = {"--z-unit"};
   o->bound.looks["mesh.mesh_tolerance"].former = {"--tolerance", "--simplify"};
   o->bound.add<io::SpecimenRequest>(*sub, "Reading", {}, reading_names);
-  o->bound.add<GivenPitch>(*sub, "Reading");
+  o->bound.add<workflow::GivenPitch>(*sub, "Reading");
   const auto add = [&](const char* heading, const std::vector<std::string>& names) {
     o->bound.add<MeshParameters>(*sub, heading, {}, names);
   };

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "image_sampler.h"
 #include "surf/core/error.h"
 #include "surf/io/surface_file.h"
 #include "surf/mesh/vertex_curvature.h"
+#include "surf/workflow/image_sampler.h"
 
 namespace surf::cli {
 namespace {
@@ -35,9 +35,10 @@ void add_shape_scalars(SurfaceScene& scene, const Watch& watch) {
   }
 }
 
-void add_image_scalar(const FileChannel& input, const GivenPitch& pitch, SurfaceScene& scene) {
-  const auto [picture, channel] = read_placed_picture(input, pitch);
-  const ImageSampler sampler(picture.image, channel);
+void add_image_scalar(const workflow::FileChannel& input, const workflow::GivenPitch& pitch,
+                      SurfaceScene& scene) {
+  const auto [picture, channel] = workflow::read_placed_picture(input, pitch);
+  const workflow::ImageSampler sampler(picture.image, channel);
   const auto is_taken = [&](const std::string& name) {
     return std::ranges::any_of(scene.surfaces,
                                [&](const Surface& surface) { return has(surface, name); });
@@ -57,19 +58,22 @@ void add_image_scalar(const FileChannel& input, const GivenPitch& pitch, Surface
             fmt::format("'{}' says nothing at ({:.6g}, {:.6g}) nm, where '{}' has a vertex",
                         channel, v.x, v.y, surface.name),
             fmt::format("Give a map without holes of all of the surface; this one is {}",
-                        place_of(picture.image)));
+                        workflow::place_of(picture.image)));
       scalar.values.push_back(value);
     }
     surface.scalars.push_back(std::move(scalar));
   }
 }
 
-void add_drape(const FileChannel& input, const GivenPitch& pitch, SurfaceScene& scene) {
-  const auto [picture, channel] = read_placed_picture(input, pitch);
+void add_drape(const workflow::FileChannel& input, const workflow::GivenPitch& pitch,
+               SurfaceScene& scene) {
+  const auto [picture, channel] = workflow::read_placed_picture(input, pitch);
   const Drape drape = io::make_drape(picture.image, channel);
   bool used = false;
   for (Surface& surface : scene.surfaces) {
-    const auto lies_under = [&](const Vec3& v) { return covers(picture.image, v.x, v.y); };
+    const auto lies_under = [&](const Vec3& v) {
+      return workflow::covers(picture.image, v.x, v.y);
+    };
     if (std::ranges::none_of(surface.mesh.vertices_nm, lies_under)) continue;
     surface.drape = drape;
     used = true;
@@ -77,7 +81,7 @@ void add_drape(const FileChannel& input, const GivenPitch& pitch, SurfaceScene& 
   if (!used)
     throw InvalidInput(
         input.file.string(),
-        fmt::format("the picture, {}, lies over no surface", place_of(picture.image)),
+        fmt::format("the picture, {}, lies over no surface", workflow::place_of(picture.image)),
         "Give one of the same place");
 }
 

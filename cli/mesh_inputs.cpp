@@ -65,7 +65,8 @@ std::string unique_name(const SurfaceScene& scene, const std::string& name) {
 /// One input on its way to surfaces.
 class Treatment {
  public:
-  Treatment(const FileChannel& input, const MeshWork& work, const Watch& watch, SurfaceScene& scene)
+  Treatment(const workflow::FileChannel& input, const MeshWork& work, const Watch& watch,
+            SurfaceScene& scene)
       : input_(input), work_(work), watch_(watch), scene_(scene) {}
 
   void scan() {
@@ -204,7 +205,7 @@ class Treatment {
     scene_.surfaces.push_back(std::move(surface));
   }
 
-  const FileChannel& input_;
+  const workflow::FileChannel& input_;
   const MeshWork& work_;
   const Watch& watch_;
   SurfaceScene& scene_;
@@ -212,7 +213,7 @@ class Treatment {
 
 }  // namespace
 
-void add_mesh_input(const FileChannel& input, const MeshWork& work, const Watch& watch,
+void add_mesh_input(const workflow::FileChannel& input, const MeshWork& work, const Watch& watch,
                     SurfaceScene& scene) {
   watch.check();
   Treatment treatment(input, work, watch, scene);

@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "picture_input.h"
 #include "surf/core/progress.h"
 #include "surf/io/mesh_unit.h"
 #include "surf/mesh/repair_mesh.h"
 #include "surf/mesh/simplify_mesh.h"
 #include "surf/mesh/smooth_mesh.h"
 #include "surf/mesh/surface.h"
+#include "surf/workflow/picture_input.h"
 
 namespace surf::cli {
 
@@ -19,7 +19,7 @@ namespace surf::cli {
 struct MeshWork {
   io::MeshUnit unit;
   std::optional<double> z_unit_nm;  ///< of scans that do not say
-  GivenPitch pitch;
+  workflow::GivenPitch pitch;
   double scale = 1;
   std::optional<RepairOptions> repair;
   SmoothOptions smooth;            ///< 0 times: not at all
@@ -35,7 +35,7 @@ struct MeshWork {
 /// Adds the surfaces of a mesh file, or of a scan or image of heights, ready to be written, and
 /// says on the way what was done. A mesh that is changed loses its scalars. Throws Interrupted, and
 /// what reading and treating throw.
-void add_mesh_input(const FileChannel& input, const MeshWork& work, const Watch& watch,
+void add_mesh_input(const workflow::FileChannel& input, const MeshWork& work, const Watch& watch,
                     SurfaceScene& scene);
 
 }  // namespace surf::cli

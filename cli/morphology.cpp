@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "common_options.h"
 #include "job_reporter.h"
+#include "scan_batch.h"
 #include "surf/afm/height_range.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
@@ -63,7 +64,7 @@ Examples:
 
 struct Options {
   BoundParameters bound;
-  std::string input;
+  std::vector<std::string> scans;
   std::optional<std::string> tip, output;
   bool quiet = false;
 };
@@ -73,35 +74,42 @@ std::string relief(const HeightField& f) {
   return fmt::format("{} to {}", format_length(range.low_nm), format_length(range.high_nm));
 }
 
+void apply(const Command& command, const Options& o,
+           const workflow::MorphologyParameters& parameters, const io::HeightReadOptions& reading,
+           const BatchStep& file) {
+  const HeightField scan = read_scan(file.scan, reading, o.quiet).field;
+  const Tip tip = read_tip_for(o.tip, scan, o.quiet);
+  const HeightField result =
+      workflow::morphology(command.operation, scan, tip, parameters, JobReporter(o.quiet));
+  io::write_height_field(
+      *file.output, result,
+      workflow::step_record(name(command.operation), workflow::records_of(parameters, reading),
+                            {file.scan, *o.tip}));
+  if (o.quiet) return;
+  if (file.one_of_many) print("{}\n", file.scan);
+  print("{:<10} {} x {} pixels of {}, heights {}\n", "scan", scan.z_nm.width(), scan.z_nm.height(),
+        format_length(scan.pitch_x_nm), relief(scan));
+  print("{:<10} {} x {} pixels\n", "tip", tip.z_nm.width(), tip.z_nm.height());
+  print("{:<10} heights {}\n", command.done, relief(result));
+  print("{:<10} {}\n", "written", *file.output);
+}
+
 int work(const Command& command, const Options& o) {
   if (!o.output) throw UsageError("--output", "no output file is given", "Add -o surface.gsf");
-  io::check_height_field_target(*o.output);
   workflow::MorphologyParameters parameters;
   io::HeightReadOptions reading;
   o.bound.apply(parameters), o.bound.apply(reading);
   parameters.threads = threads_of(o.bound);
   if (!o.tip) throw UsageError("--tip", "no tip is given", "Add --tip tip.gsf");
-  const HeightField scan = read_scan(o.input, reading, o.quiet).field;
-  const Tip tip = read_tip_for(o.tip, scan, o.quiet);
-  const HeightField result =
-      workflow::morphology(command.operation, scan, tip, parameters, JobReporter(o.quiet));
-  io::write_height_field(
-      *o.output, result,
-      workflow::step_record(name(command.operation), workflow::records_of(parameters, reading),
-                            {o.input, *o.tip}));
-  if (o.quiet) return 0;
-  print("{:<10} {} x {} pixels of {}, heights {}\n", "scan", scan.z_nm.width(), scan.z_nm.height(),
-        format_length(scan.pitch_x_nm), relief(scan));
-  print("{:<10} {} x {} pixels\n", "tip", tip.z_nm.width(), tip.z_nm.height());
-  print("{:<10} heights {}\n", command.done, relief(result));
-  print("{:<10} {}\n", "written", *o.output);
-  return 0;
+  return for_each_scan(
+      batch_of(o.scans, o.output, name(command.operation)),
+      [&](const BatchStep& file) { apply(command, o, parameters, reading, file); });
 }
 
 void add(CLI::App& app, Action& action, const Command& command) {
   const auto o = std::make_shared<Options>();
   CLI::App* sub = app.add_subcommand(name(command.operation), command.title);
-  add_scan_input(*sub, o->bound, o->input);
+  add_scan_inputs(*sub, o->bound, o->scans);
   add_tip_input(*sub, o->tip);
   o->bound.looks["morphology.distance"].hidden = command.operation == MorphologyOperation::open ||
                                                  command.operation == MorphologyOperation::close;

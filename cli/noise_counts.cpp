@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include "counts_plot.h"
 #include "job_reporter.h"
 #include "surf/core/error.h"
 #include "surf/io/files.h"
 #include "surf/workflow/count_job.h"
+#include "surf/workflow/fitted_counts.h"
 #include "surf/workflow/step_record.h"
 #include "terminal.h"
 
@@ -29,7 +29,7 @@ std::string format_fit(const CountFit& fit) {
                      fit.p < 1e-4 ? "p < 0.0001" : fmt::format("p = {:.4f}", fit.p));
 }
 
-void print_set(const FittedCounts& f) {
+void print_set(const workflow::FittedCounts& f) {
   const CountMoments& m = f.moments;
   print("{:<12} {} a trial: mean {:.4g}, variance {:.4g}, skewness {:.3g}\n",
         fmt::format("{} of {}", f.set.detector, f.set.electrons), f.set.detector, m.mean,
@@ -74,18 +74,19 @@ int print_counts(const BoundParameters& bound, const std::optional<std::string>&
   if (!quiet)
     print("{:<12} {} trials where the beam meets ({:.4g}, {:.4g}, {:.4g}) nm\n", "counts",
           job.trials, summary.hit_nm.x, summary.hit_nm.y, summary.hit_nm.z);
-  std::vector<FittedCounts> sets;
+  std::vector<workflow::FittedCounts> sets;
   for (const workflow::DetectorCounts& set : summary.sets) {
-    sets.push_back(fit(set));
+    sets.push_back(workflow::fit_counts(set));
     print_set(sets.back());
   }
   const auto made = workflow::step_record(
       "noise counts",
       workflow::records_of(job, static_cast<const mc::SimulationRequest&>(job.scene)),
       {files.scene});
-  if (!files.csv.empty()) io::write_text(files.csv, counts_csv(sets, made));
+  if (!files.csv.empty()) io::write_text(files.csv, workflow::counts_csv(sets, made));
   if (plot) {
-    io::Plot drawn = plot_counts(sets, static_cast<int>(sets.size() / job.electrons.size()));
+    io::Plot drawn =
+        workflow::plot_counts(sets, static_cast<int>(sets.size() / job.electrons.size()));
     drawn.metadata = made;
     io::write_plot(*plot, drawn);
   }

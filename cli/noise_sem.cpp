@@ -7,13 +7,13 @@
 #include <cmath>
 
 #include "options.h"
-#include "picture_input.h"
 #include "sem_noise_plot.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/scan_parameters.h"
 #include "surf/io/sem_file.h"
 #include "surf/sem/estimate_sem_noise.h"
+#include "surf/workflow/picture_input.h"
 #include "surf/workflow/step_record.h"
 #include "terminal.h"
 
@@ -29,7 +29,7 @@ struct SemPicture {
 
 /// Noise is the same for pixels of any size, so that pictures need not say theirs.
 SemPicture read_sem_picture(const SemNoiseInput& input, io::SemReadOptions options, bool quiet) {
-  const FileChannel name = parse_file_channel(input.image);
+  const workflow::FileChannel name = workflow::parse_file_channel(input.image);
   options.channel = name.channel;
   io::SemFile file;
   bool has_scale = true;
@@ -144,7 +144,7 @@ int print_sem_noise(const GivenTexts& given, const std::optional<std::string>& p
   if (!plot) return 0;
   io::Plot drawn = plot_sem_noise(e, picture.image.values.width(), picture.image.values.height());
   drawn.metadata = workflow::step_record("noise sem", workflow::records_of(input, options, reading),
-                                         {parse_file_channel(input.image).file});
+                                         {workflow::parse_file_channel(input.image).file});
   io::write_plot(*plot, drawn);
   if (!quiet) print("{:<12} {}\n", "written", *plot);
   return 0;

@@ -38,24 +38,6 @@ struct Options {
   bool quiet = false;
 };
 
-/// What a scene file says of the specimen and the beam.
-void take_scene(const std::string& file, workflow::PredictJob& job) {
-  const io::SceneFile scene = io::read_scene(file);
-  const mc::Specimen& specimen = scene.specimen;
-  if (!specimen.height_field || !specimen.bodies.empty())
-    throw UsageError(file, "its specimen is not a height field alone",
-                     "Only 'semsurf simulate' can image it");
-  if (scene.beam.tilt_deg != 0)
-    throw UsageError(file, "its beam is tilted",
-                     "Models are for a beam from straight above: use 'semsurf simulate'");
-  job.field = specimen.height_field->field;
-  job.edge = specimen.height_field->edge;
-  job.wanted.material =
-      specimen.materials.at(static_cast<std::size_t>(specimen.height_field->material)).name;
-  job.wanted.energy_ev = scene.beam.energy_ev;
-  job.wanted.spot_nm = scene.beam.spot_nm;
-}
-
 void take_heights(const Options& o, workflow::PredictJob& job) {
   io::HeightFieldFile scan = io::read_height_field(o.heights, job.reading);
   if (!o.quiet)
@@ -84,7 +66,7 @@ workflow::PredictJob make_job(const Options& o) {
   job.reading = asked.reading;
   if (io::is_scene_file(o.heights)) {
     refuse_with_scene(o.bound);
-    take_scene(o.heights, job);
+    workflow::take_scene(o.heights, job);
   } else {
     take_heights(o, job);
   }

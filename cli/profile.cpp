@@ -7,13 +7,13 @@
 #include "commands.h"
 #include "common_options.h"
 #include "job_reporter.h"
-#include "picture_input.h"
 #include "sem_input.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/cache.h"
 #include "surf/io/height_field_file.h"
 #include "surf/io/sim/materials.h"
+#include "surf/workflow/picture_input.h"
 #include "surf/workflow/profile_job.h"
 #include "terminal.h"
 
@@ -77,7 +77,7 @@ workflow::ProfileJob make_job(const Options& o) {
   job.sem.image = read_sem_input(o.image, job.sem.reading, o.quiet);
   job.sem.file = o.image;
   for (const std::string& view : files.views) {
-    const FileChannel name = parse_file_channel(view);
+    const workflow::FileChannel name = workflow::parse_file_channel(view);
     job.views.emplace_back();
     job.views.back().reading = job.sem.reading;
     if (!name.channel.empty()) job.views.back().reading.channel = name.channel;

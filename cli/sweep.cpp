@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <iterator>
 #include <map>
 #include <memory>
@@ -19,13 +17,12 @@
 #include "simulate_options.h"
 #include "surf/core/error.h"
 #include "surf/workflow/specimen_reader.h"
+#include "surf/workflow/sweep_grid.h"
 #include "surf/workflow/sweep_job.h"
 #include "terminal.h"
 
 namespace surf::cli {
 namespace {
-
-constexpr std::size_t most_runs = 1'000'000, most_tried = 100;
 
 constexpr const char* examples =
     R"(What can be varied: whatever the groups Specimen, Beam, Scan, Simulation and Detectors have, files apart.
@@ -94,77 +91,13 @@ std::string parameter_of(std::string name) {
                                  : fmt::format("Did you mean {}?", guess));
 }
 
-struct Number {
-  double value = 0;
-  std::string unit;
-};
-
-Number number(const std::string& text, const std::string& subject) {
-  Number out;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out.value);
-  if (error != std::errc() || !std::isfinite(out.value))
-    throw UsageError(subject, fmt::format("'{}' is not a number with a unit", text),
-                     "Write 0deg:60deg:5deg, say");
-  out.unit.assign(end, text.data() + text.size());
-  return out;
-}
-
-// FROM:TO:STEP, the last included where a whole number of steps leads there.
-std::vector<std::string> range(const std::string& text, const std::string& subject) {
-  const std::size_t a = text.find(':'), b = text.find(':', a + 1);
-  if (b == std::string::npos || text.find(':', b + 1) != std::string::npos)
-    throw UsageError(subject, fmt::format("'{}' is no range", text),
-                     "Write FROM:TO:STEP, as 0deg:60deg:5deg");
-  const Number from = number(text.substr(0, a), subject),
-               to = number(text.substr(a + 1, b - a - 1), subject),
-               step = number(text.substr(b + 1), subject);
-  if (from.unit != to.unit || from.unit != step.unit)
-    throw UsageError(subject, fmt::format("'{}' mixes units", text),
-                     "Give all three of the range the same one");
-  const double count = (to.value - from.value) / step.value;
-  if (!(count >= 0) || !std::isfinite(count) || count > double(most_runs))
-    throw UsageError(subject, fmt::format("'{}' does not lead from the first to the second", text),
-                     "Give a step of the right sign, and at most a million of them");
-  std::vector<std::string> out;
-  for (int i = 0; i <= static_cast<int>(std::floor(count * (1 + 1e-12) + 1e-9)); ++i)
-    out.push_back(fmt::format("{:.12g}{}", from.value + i * step.value, from.unit));
-  return out;
-}
-
-struct Axis {
-  std::string name;
-  std::vector<std::string> values;
-};
-
-Axis parse_axis(const std::string& text) {
+workflow::SweepAxis parse_axis(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
     throw UsageError("--vary", fmt::format("'{}' names no values", text),
                      "Write NAME=VALUE,VALUE or NAME=FROM:TO:STEP");
-  Axis axis{text.substr(0, equals), {}};
-  const std::string subject = "--vary " + axis.name, values = text.substr(equals + 1);
-  for (std::size_t from = 0; from <= values.size();) {
-    const std::size_t comma = std::min(values.find(',', from), values.size());
-    const std::string value = values.substr(from, comma - from);
-    if (value.empty()) throw UsageError(subject, "a value is empty", "Leave out the comma");
-    if (value.find(':') == std::string::npos) axis.values.push_back(value);
-    else
-      for (std::string& one : range(value, subject)) axis.values.push_back(std::move(one));
-    from = comma + 1;
-  }
-  return axis;
-}
-
-// "energy_500eV,tilt_5deg": what no file system minds.
-std::string file_name(const std::vector<Axis>& axes, const std::vector<std::string>& values) {
-  std::string name;
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    std::string value = values[i];
-    for (char& c : value)
-      if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-' && c != '%') c = '_';
-    name += fmt::format("{}{}_{}", i ? "," : "", axes[i].name, value);
-  }
-  return name;
+  const std::string name = text.substr(0, equals);
+  return {name, workflow::parse_sweep_values(text.substr(equals + 1), "--vary " + name)};
 }
 
 std::vector<io::FileUse> inputs_of(const Options& o) {
@@ -186,37 +119,25 @@ workflow::SweepJob make_sweep(const Options& o, const std::string& command_line)
   if (what.vary.empty())
     throw UsageError("--vary", "nothing varies", "Add --vary energy=500eV,1keV, say");
   job.command_line = command_line;
-  std::vector<Axis> axes;
-  std::size_t runs = 1;
+  std::vector<workflow::SweepAxis> axes;
   for (const std::string& text : what.vary) {
     axes.push_back(parse_axis(text));
-    for (std::size_t i = 0; i + 1 < axes.size(); ++i)
-      if (axes[i].name == axes.back().name)
-        throw UsageError("--vary", fmt::format("'{}' is given twice", axes.back().name),
-                         "Put its values into one list");
     job.axes.push_back(axes.back().name);
-    runs *= axes.back().values.size();
-    if (runs > most_runs)
-      throw UsageError("--vary", "these are more than a million runs", "Give fewer values");
   }
+  const workflow::SweepGrid grid(std::move(axes), "--vary");
   const std::vector<std::string> formats =
       what.formats.empty() ? std::vector<std::string>{"exr"} : what.formats;
   std::vector<io::FileUse> outputs{{"--output", job.folder / "sweep.csv", {}},
                                    {"--output", job.folder / "records", {}}};
-  for (std::size_t number = 0; number < runs; ++number) {
+  for (std::size_t number = 0; number < grid.runs(); ++number) {
     workflow::SweepRun run;
-    std::size_t rest = number;
-    run.values.resize(axes.size());
-    for (std::size_t a = axes.size(); a-- > 0;) {  // the last axis is the fastest
-      run.values[a] = axes[a].values[rest % axes[a].values.size()];
-      rest /= axes[a].values.size();
-    }
+    run.values = grid.values(number);
     GivenTexts given = o.simulate.parameters.given();
-    for (std::size_t a = 0; a < axes.size(); ++a)
-      given[parameter_of(axes[a].name)] = {run.values[a]};
+    for (std::size_t a = 0; a < grid.axes().size(); ++a)
+      given[parameter_of(grid.axes()[a].name)] = {run.values[a]};
     std::vector<std::string>& files = given["output"];
     for (const std::string& format : formats) {
-      files.push_back((job.folder / (file_name(axes, run.values) + "." + format)).string());
+      files.push_back((job.folder / (grid.file_name(number) + "." + format)).string());
       outputs.push_back({"--output", files.back(), {}});
     }
     std::filesystem::path record = files.back();
@@ -230,8 +151,7 @@ workflow::SweepJob make_sweep(const Options& o, const std::string& command_line)
     job.runs.push_back(std::move(run));
   }
   io::refuse_overlaps(inputs_of(o), outputs);
-  // A mistake in the last value should not wait for all the others, unless they are very many.
-  for (std::size_t i = 0; i < runs; i = runs <= most_tried || i + 1 == runs ? i + 1 : runs - 1) {
+  for (const std::size_t i : grid.tried()) {
     const workflow::SimulateJob tried = job.runs[i].make();
     workflow::resolve_scan(tried.scene.scan, mc::extent(tried.scene.specimen), tried.scene.beam);
     mc::validate(tried.scene.physics, tried.scene.beam.energy_ev);

@@ -7,13 +7,13 @@
 #include <utility>
 
 #include "common_options.h"
-#include "picture_input.h"
 #include "surf/core/error.h"
 #include "surf/core/some_parameters.h"
 #include "surf/core/units.h"
 #include "surf/io/files.h"
 #include "surf/io/image_file.h"
 #include "surf/io/model/model_file.h"
+#include "surf/workflow/picture_input.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -67,7 +67,7 @@ void add_images(const TrainFiles& files, workflow::TrainJob& job) {
       job.inputs[i].image = images[i];
       continue;
     }
-    const FileChannel input = parse_file_channel(images[i]);
+    const workflow::FileChannel input = workflow::parse_file_channel(images[i]);
     const std::string channel =
         input.channel.empty() ? io::read_image(input.file).channels.front().name : input.channel;
     if (i > 0 && channel != job.signal)

@@ -10,15 +10,14 @@
 #include "bound_parameters.h"
 #include "commands.h"
 #include "common_options.h"
-#include "image_sampler.h"
+#include "job_reporter.h"
 #include "mesh_parameters.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/web_page.h"
 #include "surf/workflow/step_record.h"
+#include "surf/workflow/view_page.h"
 #include "terminal.h"
-#include "view_inputs.h"
-#include "view_scalar.h"
 
 namespace surf::cli {
 namespace {
@@ -48,57 +47,13 @@ struct Options {
 const std::vector<std::string> reading_names{"specimen.unit", "specimen.override_unit",
                                              "scan.height_unit", "scan.height_pitch"};
 
-ViewReading make_reading(const Options& o, const io::SpecimenRequest& given) {
-  ViewReading r;
-  r.quiet = o.quiet;
-  o.bound.apply(static_cast<ViewParameters&>(r));
+workflow::ViewReading make_reading(const Options& o, const io::SpecimenRequest& given) {
+  workflow::ViewReading r;
+  o.bound.apply(static_cast<workflow::ViewParameters&>(r));
   o.bound.apply(r.pitch);
   r.unit = mesh_unit_of(given);
   r.heights = given.heights;
   return r;
-}
-
-void add_drape(const FileChannel& input, const ViewReading& reading, io::WebPage& page) {
-  auto [picture, channel] = read_placed_picture(input, reading.pitch);
-  if (std::none_of(page.surfaces.begin(), page.surfaces.end(), [&](const io::WebSurface& surface) {
-        return lies_over(picture.image, surface);
-      }))
-    throw InvalidInput(input.file.string(),
-                       fmt::format("the picture, {}, lies over no "
-                                   "surface",
-                                   place_of(picture.image)),
-                       "Give it without --drape to see it beside them");
-  const std::string wanted = channel;
-  const auto same =
-      std::find_if(page.images.begin(), page.images.end(), [&](const io::WebImage& image) {
-        return image.name == picture.name && image.has_scale && image.image.find(wanted);
-      });
-  page.drape = {static_cast<std::size_t>(same - page.images.begin()), channel};
-  if (same == page.images.end()) page.images.push_back(std::move(picture));
-}
-
-void add_scalar(const FileChannel& input, const ViewReading& reading, io::WebPage& page) {
-  const auto [picture, channel] = read_placed_picture(input, reading.pitch);
-  std::string name = channel;
-  const auto taken = [&](const std::string& wanted) {
-    for (const io::WebSurface& surface : page.surfaces)
-      for (const io::WebScalar& scalar : surface.scalars)
-        if (scalar.name == wanted) return true;
-    return false;
-  };
-  if (taken(name)) name = fmt::format("{} of {}", channel, input.file.stem().string());
-  for (int number = 2; taken(name); ++number)
-    name = fmt::format("{} of {} {}", channel, input.file.stem().string(), number);
-  const LaidScalar laid = add_sampled_scalar(page, picture.image, channel, name);
-  if (laid.values == 0)
-    throw InvalidInput(input.file.string(),
-                       fmt::format("'{}' has no value over any surface", channel),
-                       "Give a map of the same place");
-  if (!reading.quiet)
-    for (const std::string& surface : laid.left_out)
-      print_note(
-          fmt::format("{}: it is of another extent than '{}' and goes without it", surface, name));
-  if (page.scalar.empty()) page.scalar = name;
 }
 
 std::string describe(const io::WebSurface& surface) {
@@ -128,52 +83,51 @@ int work(const Options& o) {
   if (!o.output) throw UsageError("--output", "no output file is given", "Add -o page.html");
   io::SpecimenRequest given;
   o.bound.apply(given);
-  ViewReading reading = make_reading(o, given);
+  const workflow::ViewReading reading = make_reading(o, given);
   io::check_web_page_target(*o.output);
-  std::vector<FileChannel> inputs, scalars;
-  for (const std::string& file : o.files) inputs.push_back(parse_file_channel(file));
-  for (const std::string& file : o.scalars) scalars.push_back(parse_file_channel(file));
-  std::optional<FileChannel> drape;
-  if (o.drape) drape = parse_file_channel(*o.drape);
+  std::vector<workflow::FileChannel> inputs, scalars;
+  for (const std::string& file : o.files) inputs.push_back(workflow::parse_file_channel(file));
+  for (const std::string& file : o.scalars) scalars.push_back(workflow::parse_file_channel(file));
+  std::optional<workflow::FileChannel> drape;
+  if (o.drape) drape = workflow::parse_file_channel(*o.drape);
 
-  InterruptGuard interrupt;
-  reading.watch.cancel = interrupt.token();
-  ProgressBar bar(!o.quiet);
+  JobReporter reporter(o.quiet);
   const double steps = 2 * double(inputs.size() + scalars.size());  // reading, then writing
   double done = 0;
   const auto next = [&] {
-    bar.show(done++, steps, "files");
-    reading.watch.check();
+    reporter->progress(done++, steps, "files");
+    reporter->watch().check();
   };
-  io::WebPage page;
+  workflow::ViewPage made(reading, reporter);
+  io::WebPage& page = made.page();
   page.title = o.title.value_or(inputs.front().file.stem().string());
-  for (const FileChannel& input : inputs) {
+  for (const workflow::FileChannel& input : inputs) {
     next();
-    add_view_input(input, reading, page);
+    made.add(input);
   }
-  if ((drape || !scalars.empty()) && page.surfaces.empty())
-    throw UsageError(drape ? "--drape" : "--scalar", "there is no surface to lay it on",
-                     "Give a scan or a mesh");
-  for (const FileChannel& scalar : scalars) {
+  for (const workflow::FileChannel& scalar : scalars) {
     next();
-    add_scalar(scalar, reading, page);
+    made.add_scalar(scalar);
   }
-  if (drape) add_drape(*drape, reading, page);
+  if (drape) made.drape(*drape);
 
   std::vector<std::string> read;
-  for (const FileChannel& input : inputs) read.push_back(input.file.string());
-  for (const FileChannel& scalar : scalars) read.push_back(scalar.file.string());
+  for (const workflow::FileChannel& input : inputs) read.push_back(input.file.string());
+  for (const workflow::FileChannel& scalar : scalars) read.push_back(scalar.file.string());
   if (drape) read.push_back(drape->file.string());
   page.metadata = workflow::step_record(
       "view",
-      workflow::records_of(given, reading.pitch, static_cast<const ViewParameters&>(reading)),
+      workflow::records_of(given, reading.pitch,
+                           static_cast<const workflow::ViewParameters&>(reading)),
       {read.begin(), read.end()});
 
-  const auto summary = io::write_web_page(
-      *o.output, page,
-      {[&](double part, double total) { bar.show(steps / 2 * (1 + part / total), steps, "files"); },
-       interrupt.token()});
-  bar.clear();
+  const auto summary =
+      io::write_web_page(*o.output, page,
+                         {[&](double part, double total) {
+                            reporter->progress(steps / 2 * (1 + part / total), steps, "files");
+                          },
+                          reporter->cancel});
+  reporter.clear();
   if (!o.quiet) report(page, summary, *o.output);
   if (double(summary.bytes) > heavy_page_bytes)
     print_warning(fmt::format(
@@ -214,8 +168,8 @@ void add_view(CLI::App& app, Action& action) {
   o->bound.looks["view.mesh_tolerance"].former = {"--tolerance"};
   o->bound.looks["view.every"].former = {"--step"};
   o->bound.add<io::SpecimenRequest>(*sub, reading, {}, reading_names);
-  o->bound.add<GivenPitch>(*sub, reading);
-  o->bound.add<ViewParameters>(*sub, "Size");
+  o->bound.add<workflow::GivenPitch>(*sub, reading);
+  o->bound.add<workflow::ViewParameters>(*sub, "Size");
   const char* output = "Output";
   with_role(sub->add_option("-o,--output", o->output, "The page: .html")
                 ->type_name("FILE")

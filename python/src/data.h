@@ -98,5 +98,13 @@ void add_models(py::module_& module);
 void add_chain(py::module_& module);
 void add_profile(py::module_& module);
 void add_materials(py::module_& module);
+void add_survey(py::module_& module);
+void add_samples(py::module_& module);
+void add_libraries(py::module_& module);
+void add_calibrate(py::module_& module);
+void add_sweep(py::module_& module);
+void add_chart(py::module_& module);
+void add_view(py::module_& module);
+void add_compare(py::module_& module);
 
 }  // namespace surf::python

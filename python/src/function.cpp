@@ -159,6 +159,15 @@ void Call::set(const std::string& name, py::handle value) {
                                 : fmt::format("Is {} meant?", near));
 }
 
+const Keyword& Call::keyword(const std::string& name, const std::string& subject) const {
+  for (const Keyword& k : function_.keywords)
+    if (k.name == name) return k;
+  const std::string near = nearest(function_, name);
+  throw UsageError(subject, fmt::format("{} has no argument '{}'", function_.name, name),
+                   near.empty() ? fmt::format("help(semsurf.{}) lists them", function_.name)
+                                : fmt::format("Is {} meant?", near));
+}
+
 py::object Call::operator[](const std::string& argument) const {
   const auto found = arguments_.find(argument);
   return found == arguments_.end() ? py::object(py::none()) : found->second;

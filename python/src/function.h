@@ -65,6 +65,9 @@ class Call {
   bool is_given(std::string_view parameter) const { return given_.contains(parameter); }
   int threads() const { return told<mc::Execution>().threads; }
   const std::string& name() const { return function_.name; }
+  const GivenTexts& given() const { return given_; }
+  /// The keyword of that name. Throws UsageError, naming `subject`, for one that is not there.
+  const Keyword& keyword(const std::string& name, const std::string& subject) const;
 
   /// Runs `job` without Python's lock, on a thread of its own, while this one shows its progress
   /// and watches for Ctrl-C. Notes and warnings become Python's. Throws what the job throws; if it

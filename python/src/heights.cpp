@@ -116,6 +116,25 @@ void add_heights(py::module_& module) {
         return args.empty() ? py::object(view) : view.attr("astype")(*args);
       },
       "The heights, for numpy.");
+  add_pickling(
+      type,
+      [](const Heights& h) {
+        return py::make_tuple(
+            array_of(h.field.z_nm),
+            h.field.valid.empty() ? py::object(py::none()) : py::object(array_of(h.field.valid)),
+            pair_of(h.field), std::pair(h.field.origin_x_nm, h.field.origin_y_nm));
+      },
+      [](const py::tuple& data) {
+        Heights h;
+        h.field.z_nm = grid_of<double>(data[0], "heights");
+        if (!data[1].is_none())
+          h.field.valid = mask_of(data[1], h.field.z_nm.width(), h.field.z_nm.height(), "valid");
+        std::tie(h.field.pitch_x_nm, h.field.pitch_y_nm) =
+            data[2].cast<std::pair<double, double>>();
+        std::tie(h.field.origin_x_nm, h.field.origin_y_nm) =
+            data[3].cast<std::pair<double, double>>();
+        return h;
+      });
   add_made(type, "heights");
 }
 
@@ -144,6 +163,20 @@ void add_tip(py::module_& module) {
         return args.empty() ? py::object(view) : view.attr("astype")(*args);
       },
       "The structuring function, for numpy.");
+  add_pickling(
+      type,
+      [](const TipShape& t) {
+        return py::make_tuple(array_of(t.tip.z_nm), pair_of(t.tip), t.tip.apex_x, t.tip.apex_y,
+                              t.tip.doubt);
+      },
+      [](const py::tuple& data) {
+        TipShape t;
+        t.tip.z_nm = grid_of<double>(data[0], "heights");
+        std::tie(t.tip.pitch_x_nm, t.tip.pitch_y_nm) = data[1].cast<std::pair<double, double>>();
+        t.tip.apex_x = data[2].cast<int>(), t.tip.apex_y = data[3].cast<int>();
+        t.tip.doubt = data[4].cast<std::string>();
+        return t;
+      });
   add_made(type, "tip");
 }
 

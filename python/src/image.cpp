@@ -111,6 +111,31 @@ void add_image(py::module_& module) {
                               i.y_nm(i.height() - 0.5));
       },
       "Left, right, lower and upper edge in nm, for matplotlib's imshow(..., origin='lower').");
+  add_pickling(
+      type,
+      [](const Picture& p) {
+        py::list channels;
+        for (const Channel& c : p.image.channels)
+          channels.append(py::make_tuple(c.name, c.unit, array_of(c.values)));
+        return py::make_tuple(channels, std::pair(p.image.pitch_x_nm, p.image.pitch_y_nm),
+                              std::pair(p.image.origin_x_nm, p.image.origin_y_nm),
+                              record_of(p.image.metadata));
+      },
+      [](const py::tuple& data) {
+        Picture p;
+        for (const py::handle one : data[0]) {
+          const auto channel = one.cast<py::tuple>();
+          const auto name = channel[0].cast<std::string>();
+          p.image.channels.push_back(
+              {name, channel[1].cast<std::string>(), grid_of<float>(channel[2], name)});
+        }
+        std::tie(p.image.pitch_x_nm, p.image.pitch_y_nm) =
+            data[1].cast<std::pair<double, double>>();
+        std::tie(p.image.origin_x_nm, p.image.origin_y_nm) =
+            data[2].cast<std::pair<double, double>>();
+        p.image.metadata = metadata_of(data[3]);
+        return p;
+      });
   add_made(type, "image");
 }
 

@@ -34,4 +34,21 @@ void add_made(Type& type, const std::string& what) {
   show("plot", "plot_" + what, "Draws it with matplotlib, into `axes` if given; returns the axes.");
 }
 
+/// Copies and pickles: `data` gives a tuple of the object's own data, `make` the object from it.
+template <class Type, class Data, class Make>
+void add_pickling(Type& type, Data data, Make make) {
+  using T = typename Type::type;
+  type.def(py::pickle(
+      [data](const T& made) {
+        return py::make_tuple(data(made), record_of(made.record), made.found, made.file.string());
+      },
+      [make](const py::tuple& state) {
+        auto made = std::make_shared<T>(make(state[0].template cast<py::tuple>()));
+        made->record = metadata_of(state[1]);
+        made->found = state[2];
+        made->file = state[3].template cast<std::string>();
+        return made;
+      }));
+}
+
 }  // namespace surf::python

@@ -106,6 +106,17 @@ void add_mesh(py::module_& module) {
       "Lower and upper corner of the box around all vertices, in nm.");
   type.def_readwrite("name", &Mesh::name, "As a specimen calls it.");
   type.def_readwrite("material", &Mesh::material, "What it is made of; empty: as is said.");
+  add_pickling(
+      type,
+      [](const Mesh& m) {
+        const py::object self = py::cast(&m, py::return_value_policy::reference);
+        return py::make_tuple(self.attr("vertices").attr("copy")(),
+                              self.attr("triangles").attr("copy")(), m.name, m.material);
+      },
+      [](const py::tuple& data) {
+        return make_mesh(data[0], data[1], data[2].cast<std::string>(), data[3].cast<std::string>(),
+                         py::none());
+      });
   add_made(type, "mesh");
 }
 

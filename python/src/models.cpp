@@ -9,6 +9,7 @@
 #include "surf/io/files.h"
 #include "surf/io/model/model_file.h"
 #include "surf/io/scan_parameters.h"
+#include "surf/io/sim/scene_file.h"
 #include "surf/workflow/estimate_job.h"
 #include "surf/workflow/predict_job.h"
 #include "surf/workflow/train_job.h"
@@ -31,10 +32,20 @@ py::object predict(const Call& call) {
   if (job.model.empty())
     throw UsageError("`prediction.model`", "no model is given",
                      "Add `prediction.model=MODEL.json`; semsurf.train makes one");
-  const Heights heights = heights_of(call, "heights");
-  job.field = heights.field;
-  job.input = heights.file;
-  job.reading = heights.reading;
+  if (is_path(call["heights"]) && io::is_scene_file(path_of(call["heights"]))) {
+    job.input = path_of(call["heights"]);
+    for (const char* name : {"scan.height_channel", "scan.height_unit", "scan.height_pitch"})
+      if (call.is_given(name))
+        throw UsageError(fmt::format("`{}`", name), "a scene file says this itself",
+                         "Change the scene file");
+    workflow::take_scene(job.input, job);
+    call.apply(job);  // goes before what a scene file says
+  } else {
+    const Heights heights = heights_of(call, "heights");
+    job.field = heights.field;
+    job.input = heights.file;
+    job.reading = heights.reading;
+  }
   workflow::PredictSummary s;
   call.work([&](const workflow::Reporter& reporter) { s = workflow::run(job, reporter); });
   Picture made;
@@ -208,6 +219,7 @@ void add_models(py::module_& module) {
   Function f{.name = "predict",
              .summary = "An SEM image of heights by a fast model, in place of a simulation.",
              .arguments = {heights_argument}};
+  f.arguments[0].help += " Or a scene file (TOML) of one height field.";
   f.result_type = "Image";
   f.result = "The model's channels, in counts per primary.";
   f.example = ">>> image = semsurf.predict('scan.gwy', model='si-1keV-3nm.json')";

@@ -25,6 +25,14 @@ PYBIND11_MODULE(_semsurf, module) {
   add_chain(module);
   add_profile(module);
   add_materials(module);
+  add_survey(module);
+  add_samples(module);
+  add_libraries(module);
+  add_calibrate(module);
+  add_sweep(module);
+  add_chart(module);
+  add_view(module);
+  add_compare(module);
   module.attr("__version__") = surf::workflow::version();
   module.def("described_functions", &described_functions);
   module.def("set_module_folder", &surf::set_module_folder);

@@ -9,6 +9,9 @@
 #include "surf/core/units.h"
 #include "surf/io/scan_parameters.h"
 #include "surf/sem/estimate_sem_noise.h"
+#include "surf/io/sim/scene_file.h"
+#include "surf/workflow/count_job.h"
+#include "surf/workflow/fitted_counts.h"
 #include "surf/workflow/noise_job.h"
 #include "surf/workflow/step_record.h"
 
@@ -94,6 +97,50 @@ py::object noise_sem(const Call& call) {
   return findings(d);
 }
 
+py::object found_of(const CountFit& fit) {
+  py::dict d;
+  d["chi_squared"] = fit.chi_squared;
+  d["degrees"] = fit.degrees;
+  d["p"] = fit.degrees > 0 ? py::object(py::float_(fit.p)) : py::object(py::none());
+  return findings(d);
+}
+
+py::object found_of(const workflow::FittedCounts& f) {
+  py::dict d;
+  d["detector"] = f.set.detector;
+  d["electrons"] = f.set.electrons;
+  d["counts"] = array_of(f.set.counts);
+  d["mean"] = f.moments.mean;
+  d["variance"] = f.moments.variance;
+  d["skewness"] = f.moments.skewness;
+  d["poisson"] = found_of(test_fit(f.set.counts, f.poisson));
+  if (f.spread) {
+    d["log_normal"] = found_of(test_fit(f.set.counts, f.log_normal));
+    d["normal"] = found_of(test_fit(f.set.counts, f.normal));
+  }
+  return findings(d);
+}
+
+py::object noise_counts(const Call& call) {
+  workflow::CountJob job;
+  call.apply(job);  // numbers are looked at before the scene is read
+  workflow::CountSummary s;
+  const std::string scene = path_of(call["scene"]);
+  call.work([&](const workflow::Reporter& reporter) {
+    job.scene = io::read_scene(scene);
+    job.seed = job.scene.seed;
+    call.apply(job);
+    s = workflow::run(job, reporter);
+  });
+  py::list sets;
+  for (const workflow::DetectorCounts& set : s.sets)
+    sets.append(found_of(workflow::fit_counts(set)));
+  py::dict d;
+  d["hit_nm"] = py::make_tuple(s.hit_nm.x, s.hit_nm.y, s.hit_nm.z);
+  d["sets"] = sets;
+  return findings(d);
+}
+
 }  // namespace
 
 void add_noise(py::module_& module) {
@@ -116,6 +163,15 @@ void add_noise(py::module_& module) {
   sem.result = "`slope` and `intercept` with their standard errors, and the points of the line.";
   sem.is_long = false;
   define(module, sem.takes<SemNoiseOptions>().takes<io::SemReadOptions>(), noise_sem);
+
+  Function counts{.name = "noise_counts",
+                  .summary = "How many electrons a beam that stands still makes, many times over."};
+  counts.arguments = {{"scene", "PathLike", "A scene (TOML).", true, false}};
+  counts.result_type = "Findings";
+  counts.result =
+      "`sets` by number of electrons and detector: how many trials gave each of the `counts` 0, 1, "
+      "2 ..., their moments, and how well distributions fit.";
+  define(module, counts.takes<workflow::CountJob>(), noise_counts);
 }
 
 }  // namespace surf::python

@@ -4,37 +4,17 @@
 #include <utility>
 
 #include "arrays.h"
-#include "data.h"
+#include "specimens.h"
 #include "surf/core/error.h"
 #include "surf/io/cache.h"
 #include "surf/io/sim/specimen_in_memory.h"
 #include "surf/io/tracks_file.h"
+#include "surf/workflow/dry_run.h"
 #include "surf/workflow/simulate_job.h"
 #include "surf/workflow/specimen_reader.h"
 
 namespace surf::python {
 namespace {
-
-/// Files are named, shapes in memory are taken over.
-void add_specimen(py::handle part, io::SpecimenRequest& request, io::ShapesInMemory& shapes) {
-  if (PyList_Check(part.ptr()) || PyTuple_Check(part.ptr())) {
-    for (const py::handle one : part) add_specimen(one, request, shapes);
-    return;
-  }
-  if (is_path(part)) {
-    request.inputs.push_back(path_of(part));
-    return;
-  }
-  if (py::isinstance<Mesh>(part)) {
-    const Mesh mesh = mesh_of(part, {}, "specimen");
-    shapes.meshes.push_back({mesh.name, mesh.material, mesh.mesh});
-    return;
-  }
-  if (shapes.field) throw UsageError("specimen", "there are two height fields", "Give one at most");
-  if (py::isinstance<Heights>(part) && request.heights.pitch_x_nm)
-    throw UsageError("`scan.height_pitch`", "a HeightField has one already", "Leave it out");
-  shapes.field = heights_of(part, request.heights, "specimen").field;
-}
 
 py::object measured(double value, double standard_error) {
   py::dict d;
@@ -62,15 +42,22 @@ py::list tracks_of(const std::vector<Track>& tracks) {
   return all;
 }
 
+/// The job's scene, with notes about it.
+void take_scene(workflow::SimulateJob& job, const io::SpecimenRequest& request,
+                const io::ShapesInMemory& shapes, const Call& call,
+                const workflow::Reporter& reporter) {
+  job.scene = io::read_specimen(request, shapes, workflow::specimen_reader());
+  for (const std::string& note : job.scene.notes) reporter.note(note);
+  call.apply(static_cast<mc::SimulationRequest&>(job.scene));
+}
+
 class Simulation {
  public:
   explicit Simulation(workflow::SimulateJob job) : job_(std::move(job)) {}
 
   void run(const io::SpecimenRequest& request, const io::ShapesInMemory& shapes, const Call& call,
            const workflow::Reporter& reporter) {
-    job_.scene = io::read_specimen(request, shapes, workflow::specimen_reader());
-    for (const std::string& note : job_.scene.notes) reporter.note(note);
-    call.apply(static_cast<mc::SimulationRequest&>(job_.scene));
+    take_scene(job_, request, shapes, call, reporter);
     summary_ = workflow::run(job_, reporter);
     for (const std::filesystem::path& file : summary_.written)
       if (file.string().ends_with(".tracks.vtp")) summary_.tracks = io::read_tracks(file);
@@ -111,6 +98,31 @@ py::object Simulation::result() {
   return object_of(std::move(picture));
 }
 
+py::object foretold(workflow::SimulateJob job, const io::SpecimenRequest& request,
+                    const io::ShapesInMemory& shapes, const Call& call) {
+  constexpr double seconds = 10;
+  workflow::DryRun dry;
+  call.work([&](const workflow::Reporter& reporter) {
+    take_scene(job, request, shapes, call, reporter);
+    dry = workflow::dry_run(std::move(job), 1, seconds, reporter);
+  });
+  py::dict d, memory, disk;
+  d["size"] = py::make_tuple(dry.scan.width, dry.scan.height);
+  d["method"] = mc::name(dry.choice.method);
+  d["method_reason"] = dry.choice.reason;
+  d["seconds"] = measured(dry.expected_s, dry.standard_error_s);
+  d["threads"] = dry.threads;
+  d["memory_bytes"] = dry.memory_bytes;
+  for (const workflow::MemoryNeed& need : dry.memory) memory[py::str(need.what)] = need.bytes;
+  for (const workflow::DiskNeed& need : dry.disk) disk[py::str(need.what)] = need.bytes;
+  d["memory"] = findings(memory);
+  d["disk"] = findings(disk);
+  py::list warnings;
+  for (const std::string& warning : dry.warnings) warnings.append(with_keywords(warning));
+  d["warnings"] = warnings;
+  return findings(d);
+}
+
 py::object simulate(const Call& call) {
   workflow::SimulateJob job;
   job.cache = io::cache_folder();
@@ -120,6 +132,8 @@ py::object simulate(const Call& call) {
   auto request = call.told<io::SpecimenRequest>();
   io::ShapesInMemory shapes;
   add_specimen(call["specimen"], request, shapes);
+  if (const py::object dry = call["dry_run"]; !dry.is_none() && py::bool_(dry))
+    return foretold(std::move(job), request, shapes, call);
   Simulation simulation(std::move(job));
   call.work(
       [&](const workflow::Reporter& reporter) { simulation.run(request, shapes, call, reporter); },
@@ -135,10 +149,10 @@ void add_simulate(py::module_& module) {
       "Any two of `size`, `pixel_size` and `region` define the scan. With one the specimen's\n"
       "extent gives the rest; with none it is 256 pixels across the longer side. Lengths are nm,\n"
       "energies eV, angles degrees; texts may carry another unit: '5keV', '2nm', '40deg'.";
-  f.arguments = {{"specimen", "PathLike | Mesh | HeightField | ArrayLike | Sequence",
-                  "A scene file (TOML); or meshes and at most one height field, as files, objects "
-                  "or an array of heights in nm.",
-                  true, false}};
+  f.arguments = {specimen_argument,
+                 {"dry_run", "bool",
+                  "Simulate a part for ten seconds, and tell what the whole would take, as "
+                  "Findings."}};
   f.takes<io::SpecimenRequest>({}, {"specimen.input"}).takes<workflow::SimulateJob>();
   f.result_type = "Image";
   f.result =

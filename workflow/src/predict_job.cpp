@@ -17,6 +17,7 @@
 #include "surf/io/model/model_file.h"
 #include "surf/io/overlaps.h"
 #include "surf/io/scan_parameters.h"
+#include "surf/io/sim/scene_file.h"
 #include "surf/mc/geometry/largest_length.h"
 #include "surf/mc/physics/physics.h"
 #include "surf/mc/simulate.h"
@@ -176,6 +177,23 @@ PredictSummary run(const PredictJob& job, const Reporter& reporter) {
   for (const fs::path& output : job.outputs)
     io::write_image(output, summary.image, {job.png_channel});
   return summary;
+}
+
+void take_scene(const std::filesystem::path& file, PredictJob& job) {
+  const io::SceneFile scene = io::read_scene(file);
+  const mc::Specimen& specimen = scene.specimen;
+  if (!specimen.height_field || !specimen.bodies.empty())
+    throw UsageError(file.string(), "its specimen is not a height field alone",
+                     "Only a simulation can image it");
+  if (scene.beam.tilt_deg != 0)
+    throw UsageError(file.string(), "its beam is tilted",
+                     "Models are for a beam from straight above: simulate it");
+  job.field = specimen.height_field->field;
+  job.edge = specimen.height_field->edge;
+  job.wanted.material =
+      specimen.materials.at(static_cast<std::size_t>(specimen.height_field->material)).name;
+  job.wanted.energy_ev = scene.beam.energy_ev;
+  job.wanted.spot_nm = scene.beam.spot_nm;
 }
 
 }  // namespace surf::workflow

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "picture_input.h"
+#include "surf/workflow/picture_input.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,7 +15,7 @@
 #include "surf/io/image_file.h"
 #include "surf/io/scan_parameters.h"
 
-namespace surf::cli {
+namespace surf::workflow {
 namespace {
 
 bool is_file(const std::filesystem::path& path) {
@@ -128,10 +128,10 @@ PlacedPicture read_placed_picture(const FileChannel& input, const GivenPitch& gi
   PlacedPicture placed{read_picture(input, given), input.channel};
   if (!placed.picture.has_scale)
     throw InvalidInput(input.file.string(), "the picture does not say how large its pixels are",
-                       "Give their size with --pixel-size");
+                       "Give their size, as `picture.pixel_size=2nm`");
   if (input.channel.empty() || !placed.picture.image.find(input.channel))
     placed.channel = placed.picture.image.channels.front().name;
   return placed;
 }
 
-}  // namespace surf::cli
+}  // namespace surf::workflow

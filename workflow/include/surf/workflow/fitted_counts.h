@@ -8,18 +8,18 @@
 #include "surf/io/plot.h"
 #include "surf/workflow/count_job.h"
 
-namespace surf::cli {
+namespace surf::workflow {
 
 /// One set of counts with its fits. Where all counts are equal only the Poisson fit is there.
 struct FittedCounts {
-  workflow::DetectorCounts set;
+  DetectorCounts set;
   CountMoments moments;
   PoissonCounts poisson;
   bool spread = false;  ///< the others are fitted
   LogNormalCounts log_normal;
   NormalCounts normal;
 };
-FittedCounts fit(const workflow::DetectorCounts& set);
+FittedCounts fit_counts(const DetectorCounts& set);
 
 /// A panel for each set, `detectors` beside each other (thesis, figures 8-5 to 8-7).
 io::Plot plot_counts(const std::vector<FittedCounts>& sets, int detectors);
@@ -29,4 +29,4 @@ io::Plot plot_counts(const std::vector<FittedCounts>& sets, int detectors);
 std::string counts_csv(const std::vector<FittedCounts>& sets,
                        const std::map<std::string, std::string>& made);
 
-}  // namespace surf::cli
+}  // namespace surf::workflow

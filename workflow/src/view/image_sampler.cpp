@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "image_sampler.h"
+#include "surf/workflow/image_sampler.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace surf::cli {
+namespace surf::workflow {
 namespace {
 
 constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
@@ -56,4 +56,4 @@ double ImageSampler::pixel(int x, int y) const {
   return std::isfinite(value) && (!valid_ || valid_->values(x, y) != 0) ? value : double{nothing};
 }
 
-}  // namespace surf::cli
+}  // namespace surf::workflow

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "counts_plot.h"
+#include "surf/workflow/fitted_counts.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "surf/core/units.h"
 
-namespace surf::cli {
+namespace surf::workflow {
 namespace {
 
 constexpr std::size_t most_bars = 60;
@@ -55,7 +55,7 @@ io::PlotPanel panel(const FittedCounts& f) {
 
 }  // namespace
 
-FittedCounts fit(const workflow::DetectorCounts& set) {
+FittedCounts fit_counts(const DetectorCounts& set) {
   FittedCounts f;
   f.set = set;
   f.moments = moments(set.counts);
@@ -91,4 +91,4 @@ std::string counts_csv(const std::vector<FittedCounts>& sets,
   return text;
 }
 
-}  // namespace surf::cli
+}  // namespace surf::workflow

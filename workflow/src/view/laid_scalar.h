@@ -7,7 +7,7 @@
 
 #include "surf/io/web_page.h"
 
-namespace surf::cli {
+namespace surf::workflow {
 
 /// What became of a map.
 struct LaidScalar {
@@ -26,4 +26,4 @@ LaidScalar add_sampled_scalar(io::WebPage& page, const Image& image, const std::
 /// Whether some of the surface lies under the image.
 bool lies_over(const Image& image, const io::WebSurface& surface);
 
-}  // namespace surf::cli
+}  // namespace surf::workflow

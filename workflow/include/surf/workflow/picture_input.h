@@ -8,7 +8,7 @@
 #include "surf/core/parameters.h"
 #include "surf/io/web_page.h"
 
-namespace surf::cli {
+namespace surf::workflow {
 
 /// FILE or FILE:CHANNEL.
 struct FileChannel {
@@ -42,4 +42,4 @@ struct PlacedPicture {
 };
 PlacedPicture read_placed_picture(const FileChannel& input, const GivenPitch& given);
 
-}  // namespace surf::cli
+}  // namespace surf::workflow

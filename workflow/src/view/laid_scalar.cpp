@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "view_scalar.h"
+#include "laid_scalar.h"
 
 #include <algorithm>
 #include <cmath>
 #include <variant>
 
-#include "image_sampler.h"
+#include "surf/workflow/image_sampler.h"
 
-namespace surf::cli {
+namespace surf::workflow {
 namespace {
 
 template <class Use>
@@ -91,4 +91,4 @@ LaidScalar add_sampled_scalar(io::WebPage& page, const Image& image, const std::
   return laid;
 }
 
-}  // namespace surf::cli
+}  // namespace surf::workflow

@@ -5,7 +5,7 @@
 
 #include "surf/core/image.h"
 
-namespace surf::cli {
+namespace surf::workflow {
 
 /// Whether a place lies under the image, whose pixels reach half a pitch beyond their centres.
 bool covers(const Image& image, double x_nm, double y_nm);
@@ -28,4 +28,4 @@ class ImageSampler {
   const Channel* valid_;
 };
 
-}  // namespace surf::cli
+}  // namespace surf::workflow
