@@ -24,6 +24,7 @@ packages=(
   paraview-dev python3-paraview mpi-default-dev python3-dev       # VTK: ParaView's own
   python3-matplotlib                                              # charts
   pybind11-dev python3-numpy python3-pytest                       # the Python package and its tests
+  python3-nbconvert python3-ipykernel                             # the notebooks, which the tests run
   libgtest-dev libgmock-dev                                       # tests
 )
 # The pages of semsurf view. Debian's npm conflicts with other packages of Node.js: any that is there will do.

@@ -233,6 +233,7 @@ def write_mesh(
 def simulate(
     specimen: PathLike | Mesh | HeightField | ArrayLike | Sequence,
     *,
+    dry_run: bool | None = None,
     progress: bool | Callable[[float, float, str], object] | None = None,
     material: str | None = None,
     materials: PathLike | Sequence[PathLike] | None = None,
@@ -447,6 +448,19 @@ def noise_sem(
     pixel_size: float | str | None = None,
 ) -> Findings:
     """The noise of an SEM image: the line variance = slope mean + intercept."""
+
+
+def noise_counts(
+    scene: PathLike,
+    *,
+    progress: bool | Callable[[float, float, str], object] | None = None,
+    at: str | float | Sequence | None = None,
+    electrons: str | float | Sequence = '1,20,100',
+    trials: int = 10000,
+    seed: int | None = None,
+    threads: int | None = None,
+) -> Findings:
+    """How many electrons a beam that stands still makes, many times over."""
 
 
 def check_mesh(
@@ -735,3 +749,255 @@ def materials(
     materials: PathLike | Sequence[PathLike] | None = None,
 ) -> Findings:
     """The materials and their numbers."""
+
+
+def survey(
+    scans: PathLike | HeightField | ArrayLike | Sequence,
+    *,
+    csv: PathLike | None = None,
+    progress: bool | Callable[[float, float, str], object] | None = None,
+    no_tip: bool = False,
+    draws: int = 5,
+    level_method: Literal['hough', 'plane', 'polynomial', 'none'] = 'hough',
+    level_degree: int = 2,
+    level_tolerance: float | str | None = None,
+    rows: Literal['none', 'median', 'difference'] | None = None,
+    tip_size: int = 21,
+    seed: int = 1,
+    height_channel: str | None = None,
+    height_unit: float | str | None = None,
+    height_pitch: float | str | None = None,
+    threads: int | None = None,
+) -> list[Findings]:
+    """Roughness, noise, tip and its broadening of many AFM scans, as a table."""
+
+
+def sample(
+    *,
+    progress: bool | Callable[[float, float, str], object] | None = None,
+    name: str | None = None,
+    output: PathLike | None = None,
+    electrons: int = 200,
+    size: str | float | Sequence = '456x172',
+    physics: str | Mapping[str, str] | None = None,
+    cutoff: float | str = '0eV',
+    tip_lean: float | str = '0deg',
+    tip_azimuth: float | str = '0deg',
+    gain_drift: float = 0,
+    spot: float | str | None = None,
+    detector: str | None = None,
+    film: str | None = None,
+    film_thickness: float | str = '2nm',
+    scan_drift: float = 0,
+    line_jitter: float = 0,
+    seed: int = 1,
+    cache: PathLike | None = None,
+    threads: int | None = None,
+) -> Findings:
+    """A scan and an SEM image of a known surface, to try a reconstruction on."""
+
+
+def libraries(
+    *,
+    check: bool | None = None,
+    cache: PathLike | None = None,
+) -> Findings:
+    """The libraries of cascades in the cache."""
+
+
+def build_libraries(
+    material: str | Sequence[str],
+    *,
+    progress: bool | Callable[[float, float, str], object] | None = None,
+    energy: str | float | Sequence = '1keV',
+    cascades: int | None = None,
+    accuracy: float | str | None = None,
+    physics: str | Mapping[str, str] | None = None,
+    cutoff: float | str = '0eV',
+    seed: int = 1,
+    cache: PathLike | None = None,
+    threads: int | None = None,
+    materials: PathLike | Sequence[PathLike] | None = None,
+) -> list[Findings]:
+    """Make libraries of cascades and keep them in the cache."""
+
+
+def calibrate(
+    image: PathLike | Image | ArrayLike,
+    simulated: PathLike | Image,
+    *,
+    use: PathLike | Image | ArrayLike | None = None,
+    exclude: PathLike | Image | ArrayLike | None = None,
+    output: PathLike | None = None,
+    progress: bool | Callable[[float, float, str], object] | None = None,
+    edge: Literal['mirror', 'flat', 'periodic'] = 'mirror',
+    fit: str | None = None,
+    ratio: float | None = None,
+    offset: float | None = None,
+    black: float | None = None,
+    white: float | None = None,
+    range: float | str | None = None,
+    sem_channel: str | None = None,
+    pixel_size: float | str | None = None,
+    threads: int | None = None,
+) -> Findings:
+    """Gains and offset that turn simulated images into a real one."""
+
+
+def sweep(
+    specimen: PathLike | Sequence[PathLike],
+    *,
+    vary: dict[str, str | Sequence],
+    format: str | Sequence[str] | None = None,
+    progress: bool | Callable[[float, float, str], object] | None = None,
+    output: PathLike | None = None,
+    part: str | float | Sequence | None = None,
+    material: str | None = None,
+    materials: PathLike | Sequence[PathLike] | None = None,
+    unit: str | None = None,
+    override_unit: bool = False,
+    substrate: str | None = None,
+    substrate_z: float | str | None = None,
+    edge: Literal['mirror', 'flat', 'periodic'] | None = None,
+    height_channel: str | None = None,
+    height_unit: float | str | None = None,
+    height_pitch: float | str | None = None,
+    energy: float | str = '1keV',
+    tilt: float | str = '0deg',
+    azimuth: float | str = '0deg',
+    spot: float | str = '0nm',
+    convergence: float | str = '0deg',
+    focus: float | str = '0nm',
+    working_distance: float | str = '0nm',
+    size: str | float | Sequence | None = None,
+    pixel_size: float | str | None = None,
+    region: str | float | Sequence | None = None,
+    electrons: int | None = None,
+    accuracy: float | str | None = None,
+    accuracy_floor: float | None = None,
+    time: float | str | None = None,
+    current: float | str | None = None,
+    dwell: float | str | None = None,
+    method: Literal['auto', 'direct', 'replay'] | None = None,
+    mesh_tolerance: float | str = '0nm',
+    detector: str | float | Sequence | None = None,
+    physics: str | Mapping[str, str] | None = None,
+    cutoff: float | str = '0eV',
+    seed: int = 1,
+    estimate: Literal['plain', 'guided', 'auto'] | None = None,
+    guide_model: PathLike | None = None,
+    threads: int | None = None,
+    cache: PathLike | None = None,
+    channels: str | float | Sequence | None = None,
+    deposit: int | None = None,
+    trajectories: int | None = None,
+    trajectories_at: str | float | Sequence | None = None,
+    spectra: bool = False,
+    png_channel: str | None = None,
+    layout: Literal['auto', 'rows', 'tiles'] | None = None,
+    checkpoint: PathLike | None = None,
+    checkpoint_every: float | str = '30s',
+    restart: bool = False,
+) -> Findings:
+    """Simulations over a grid of settings: energies, tilts, focus."""
+
+
+def chart(
+    specimen: PathLike | Mesh | HeightField | ArrayLike | Sequence,
+    *,
+    progress: bool | Callable[[float, float, str], object] | None = None,
+    output: PathLike | None = None,
+    quick: bool = False,
+    methods: str | float | Sequence | None = None,
+    seed: int = 1,
+    threads: int | None = None,
+    accuracy: float | str = '1%',
+    reference: float | str | None = None,
+    compared: int = 1000,
+    most: float = 3e+08,
+    surfaces: int = 20,
+    surface_size: int = 64,
+    draws: int | None = None,
+    model: PathLike | None = None,
+    material: str | None = None,
+    materials: PathLike | Sequence[PathLike] | None = None,
+    unit: str | None = None,
+    override_unit: bool = False,
+    substrate: str | None = None,
+    substrate_z: float | str | None = None,
+    edge: Literal['mirror', 'flat', 'periodic'] | None = None,
+    height_channel: str | None = None,
+    height_unit: float | str | None = None,
+    height_pitch: float | str | None = None,
+    energy: float | str = '1keV',
+    tilt: float | str = '0deg',
+    azimuth: float | str = '0deg',
+    spot: float | str = '0nm',
+    convergence: float | str = '0deg',
+    focus: float | str = '0nm',
+    working_distance: float | str = '0nm',
+    size: str | float | Sequence | None = None,
+    pixel_size: float | str | None = None,
+    region: str | float | Sequence | None = None,
+    physics: str | Mapping[str, str] | None = None,
+    cutoff: float | str = '0eV',
+) -> Findings:
+    """Time against error of every method, on a scene or a sample of yours."""
+
+
+def view(
+    items: PathLike | HeightField | Mesh | Image | Tip | ArrayLike | Sequence | dict,
+    output: PathLike,
+    *,
+    title: str | None = None,
+    drape: PathLike | Image | tuple[Image, str] | None = None,
+    scalar: PathLike | Image | tuple[Image, str] | list | dict | None = None,
+    progress: bool | Callable[[float, float, str], object] | None = None,
+    mesh_tolerance: float | str | None = None,
+    every: int = 1,
+    pixel_size: float | str | None = None,
+    unit: str | None = None,
+    override_unit: bool = False,
+    height_unit: float | str | None = None,
+    height_pitch: float | str | None = None,
+    threads: int | None = None,
+) -> Findings:
+    """One web page that shows surfaces and images to anybody."""
+
+
+def compare(
+    before: PathLike | HeightField | Mesh | ArrayLike,
+    after: PathLike | HeightField | Mesh | Image | ArrayLike,
+    *,
+    progress: bool | Callable[[float, float, str], object] | None = None,
+    registered: bool = False,
+    largest_shift: float | str | None = None,
+    least_overlap: float | str = '50%',
+    before_deviation: float | str | None = None,
+    after_deviation: float | str | None = None,
+    false_alarms: float | str = '5%',
+    largest_window: float | str | None = None,
+    smallest_window: int = 2,
+    simulations: int = 0,
+    model_error: float | str = '5%',
+    seed: int = 1,
+    energy: float | str | None = None,
+    spot: float | str | None = None,
+    physics: str | Mapping[str, str] | None = None,
+    model: PathLike | None = None,
+    signal: str | None = None,
+    cache: PathLike | None = None,
+    threads: int | None = None,
+    no_picture: bool = False,
+    output: PathLike | None = None,
+    material: str | None = None,
+    materials: PathLike | Sequence[PathLike] | None = None,
+    unit: str | None = None,
+    override_unit: bool = False,
+    height_channel: str | None = None,
+    height_unit: float | str | None = None,
+    height_pitch: float | str | None = None,
+    sem_channel: str | None = None,
+    pixel_size: float | str | None = None,
+) -> Findings:
+    """Where a surface differs from another beyond their errors."""

@@ -64,7 +64,7 @@ std::vector<std::string> names_of(const py::object& given) {
   if (PyUnicode_Check(given.ptr())) return {given.cast<std::string>()};
   std::vector<std::string> names;
   if (!PyList_Check(given.ptr()) && !PyTuple_Check(given.ptr()))
-    throw UsageError("materials", "it is no name", "Give 'Si', or ['Si', 'Au']");
+    throw UsageError("material", "it is no name", "Give 'Si', or ['Si', 'Au']");
   for (const py::handle one : given) names.push_back(py::str(one));
   return names;
 }
@@ -78,8 +78,8 @@ py::object build(const Call& call) {
   Call::notes(notes);
   std::vector<mc::CascadeSettings> wanted;
   std::vector<std::string> titles;
-  for (const std::string& name : names_of(call["materials"])) {
-    const mc::Material& material = materials.find(name, "materials");
+  for (const std::string& name : names_of(call["material"])) {
+    const mc::Material& material = materials.find(name, "material");
     for (const std::string& doubt : mc::doubts(material)) Call::warn(doubt);
     std::ranges::move(workflow::libraries_of(parameters, material), std::back_inserter(wanted));
     for (const double energy_ev : parameters.energies_ev)
@@ -126,7 +126,7 @@ void add_libraries(py::module_& module) {
   Function b{.name = "build_libraries",
              .summary = "Make libraries of cascades and keep them in the cache."};
   b.details = "Simulations make what they need by themselves; this is for making it beforehand.";
-  b.arguments = {{"materials", "str | Sequence[str]", "Materials by name.", true, false}};
+  b.arguments = {{"material", "str | Sequence[str]", "Materials by name.", true, false}};
   b.takes<workflow::LibraryParameters>();
   add_keywords(b.keywords, io::MaterialChoice{}, {"specimen.material"});
   b.result_type = "list[Findings]";

@@ -64,7 +64,12 @@ py::object survey(const Call& call) {
   if (!table.empty()) io::check_writable(table);
   std::vector<workflow::SurveyedScan> done;
   py::list found;
-  for (const py::object& one : given_scans(call["scans"])) {
+  const std::vector<py::object> scans = given_scans(call["scans"]);
+  const auto go_on = [&](const Error& e) {  // the others are wanted all the same
+    if (scans.size() == 1) throw;
+    Call::warn(e.what());
+  };
+  for (const py::object& one : scans) {
     workflow::SurveyedScan s;
     try {
       const Heights scan = heights_of(one, reading, "scans");
@@ -75,10 +80,10 @@ py::object survey(const Call& call) {
       });
       s.file = scan.file;
     } catch (const FileError& e) {
-      Call::warn(e.what());  // the others are wanted all the same
+      go_on(e);
       continue;
     } catch (const InvalidInput& e) {
-      Call::warn(e.what());
+      go_on(e);
       continue;
     }
     done.push_back(s);

@@ -85,8 +85,10 @@ Image image_like_the_result(const ResolvedJob& job) {
 }
 
 void check_outputs(const ResolvedJob& job) {
-  if (job.outputs.empty() && !job.keep_image)
+  if (job.outputs.empty()) {
+    if (job.keep_image) return;  // the caller takes it from memory
     throw UsageError("`output`", "no output file is given", "Add `output=image.exr`");
+  }
   const Image image = image_like_the_result(job);
   io::refuse_overlaps(inputs_of(job), outputs_of(job));
   refuse_strangers_of(job);
