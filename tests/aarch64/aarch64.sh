@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Builds libsurf, mc_sim and their tests for AArch64 and runs them under qemu-user.
-# Usage: aarch64.sh gcc|clang [vectors]     vectors: compile the sources of vector code alone, and run nothing
+# Usage: aarch64.sh gcc|clang [some|vectors]
+#   some      of the tests build and run those of vector code
+#   vectors   compile the sources of vector code alone, and run nothing
 # Exit code 77: this machine lacks what it takes. docs/testing.md says what is run.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -28,7 +30,9 @@ cmake/aarch64/sysroot.sh build-aarch64/sysroot
 step "arm64 packages"
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-cmake --preset "$preset" >"$log" 2>&1 || { cat "$log"; exit 1; }
+tests_alone=OFF
+[[ $1 == clang || ${2:-} == some ]] && tests_alone=ON
+cmake --preset "$preset" -DSEMSURF_VECTOR_TESTS_ALONE=$tests_alone >"$log" 2>&1 || { cat "$log"; exit 1; }
 if [[ ${2:-} == vectors ]]; then
   # Sources with loops for each instruction set, and those that hold such loops for others.
   mapfile -t sources < <(grep -lE 'each_target\.h|_loops-inl\.h' -r libsurf/src mc_sim/src --include='*.cpp')

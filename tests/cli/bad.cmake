@@ -145,6 +145,7 @@ semsurf_cli_unusable(no_mott_table "no Mott table for Zn .Z = 30.*elastic=browni
 
 semsurf_cli_usage(level_input "no scan is given" level -o flat.gsf)
 semsurf_cli_usage(level_output "--output.*no output" level block.gsf)
+semsurf_cli_usage(level_one_file "2 scans do not go into one file" level block.gsf plane.gsf -o flat.gsf)
 semsurf_cli_usage(level_method "--level-method: .magic. is not known. Choose hough, plane" level block.gsf --level-method magic -o flat.gsf)
 semsurf_cli_usage(level_rows "median or difference" level block.gsf --rows mean -o flat.gsf)
 semsurf_cli_usage(level_mask "only the method hough" level block.gsf --level-method plane --substrate-mask m.tif -o flat.gsf)
