@@ -62,7 +62,7 @@ CalibrateInput read_input(const CalibrateFiles& o) {
       workflow::read_picture(file, {o.reading.pixel_x_nm, o.reading.pixel_y_nm});
   if (!picture.has_scale)
     throw InvalidInput(o.image, "it does not say how large its pixels are",
-                       "Give their size with --pixel-size");
+                       "Give their size, as `scan.pixel_size=2nm`");
   const Image& image = picture.image;
   const Channel* channel = file.channel.empty() ? nullptr : image.find(file.channel);
   if (!channel) channel = &image.channels.front();  // the first, or by number

@@ -156,15 +156,25 @@ int report_extra(const CLI::App& root) {
   return exit_usage;
 }
 
+/// A hidden option that was given several times; CLI11 does not name those.
+std::string repeated_hidden(const CLI::App& app) {
+  for (const CLI::Option* const option : app.get_options())
+    if (option->get_group().empty() && option->results().size() > 1 &&
+        !option->get_lnames().empty())
+      return "--" + option->get_lnames().front();
+  return {};
+}
+
 // "--energy: At Most 1 required but received 2", in CLI11's words.
-bool report_repetition(const CLI::ParseError& error) {
+bool report_repetition(const CLI::App& app, const CLI::ParseError& error) {
   if (!dynamic_cast<const CLI::ArgumentMismatch*>(&error)) return false;
-  static const std::regex words("(-.+): At Most 1 required but received (\\d+)");
+  static const std::regex words("(-.+|): At Most 1 required but received (\\d+)");
   const std::string text = error.what();
   std::smatch found;
   if (!std::regex_match(text, found, words)) return false;
   const std::string times = found[2] == "2" ? "twice" : found[2].str() + " times";
-  print_error(fmt::format("{}: it is given {}. Give it once", found[1].str(), times));
+  const std::string name = found[1].length() > 0 ? found[1].str() : repeated_hidden(app);
+  print_error(fmt::format("{}: it is given {}. Give it once", name, times));
   return true;
 }
 
@@ -177,7 +187,7 @@ int report_parse_error(const CLI::App& root, const CLI::ParseError& error) {
   }
   if (dynamic_cast<const CLI::ExtrasError*>(&error)) return report_extra(root);
   const CLI::App& app = parsed_app(root);
-  if (report_repetition(error)) return exit_usage;
+  if (report_repetition(app, error)) return exit_usage;
   print_error(fmt::format("{}. {}", error.what(), help_hint(app)));
   return exit_usage;
 }

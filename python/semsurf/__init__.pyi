@@ -895,9 +895,6 @@ def sweep(
     spectra: bool = False,
     png_channel: str | None = None,
     layout: Literal['auto', 'rows', 'tiles'] | None = None,
-    checkpoint: PathLike | None = None,
-    checkpoint_every: float | str = '30s',
-    restart: bool = False,
 ) -> Findings:
     """Simulations over a grid of settings: energies, tilts, focus."""
 

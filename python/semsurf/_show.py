@@ -123,8 +123,9 @@ def plot_heights(made, axes=None, **keywords):
 
 def plot_image(made, channel=None, axes=None, **keywords):
     name = channel or made.channels[0]
+    values = made[name]
     unit = made.units[name]
-    return _draw(made[name], made, axes, "per primary" if unit == "1" else unit, name, keywords)
+    return _draw(values, made, axes, "per primary" if unit == "1" else unit, name, keywords)
 
 
 def plot_tip(made, axes=None, **keywords):

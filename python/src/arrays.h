@@ -56,7 +56,9 @@ Grid<T> grid_of(py::handle values, const std::string& subject) {
     PyErr_Clear();
     throw InvalidInput(subject, "it is no array of numbers", "Give an array of two dimensions");
   }
-  if (array.ndim() != 2 || array.size() == 0)
+  if (array.ndim() == 2 && array.size() == 0)
+    throw InvalidInput(subject, "the array is empty", "Give an array with rows and columns");
+  if (array.ndim() != 2)
     throw InvalidInput(subject, fmt::format("the array has {} dimensions", array.ndim()),
                        "Give an array of two dimensions, rows from the lowest to the highest");
   Grid<T> grid(static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)));

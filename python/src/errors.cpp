@@ -4,6 +4,7 @@
 #include <exception>
 #include <string>
 
+#include "function.h"
 #include "keywords.h"
 #include "surf/core/error.h"
 
@@ -19,6 +20,7 @@ void set(const char* name, const Error& error) {
     const std::string whole = subject.substr(1, subject.size() - 2);
     field = py::str(keyword_of(whole.substr(0, whole.find('='))));
   }
+  if (field.is_none() && is_argument(subject)) field = py::str(subject);
   const py::object type = error_class(name);
   const py::object value = type(with_keywords(subject), with_keywords(error.reason()),
                                 with_keywords(error.remedy()), field);

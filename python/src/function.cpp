@@ -190,6 +190,14 @@ void define(py::module_& module, Function function, Body body) {
       docstring_of(f).c_str());
 }
 
+bool is_argument(const std::string& name) {
+  if (name == progress.name) return true;
+  for (const Function& f : functions())
+    for (const Argument& a : f.arguments)
+      if (a.name == name) return true;
+  return false;
+}
+
 py::list described_functions() {
   py::list all;
   for (const Function& f : functions()) {

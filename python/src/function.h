@@ -94,6 +94,9 @@ using Body = std::function<py::object(const Call& call)>;
 /// Adds the function to the module, with a signature and a docstring made of all that is said here.
 void define(py::module_& module, Function function, Body body);
 
+/// Whether a function has an argument of that name.
+bool is_argument(const std::string& name);
+
 /// Descriptions of all functions, for the stub and for whoever asks: see `semsurf.parameters`.
 py::list described_functions();
 

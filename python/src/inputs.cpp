@@ -85,12 +85,17 @@ Heights heights_of(py::handle value, const io::HeightReadOptions& reading,
     return heights;
   }
   HeightField& f = heights.field;
-  f.z_nm = grid_of<double>(value, argument);
+  // What is masked in numpy's masked arrays is a hole.
+  const py::object plain = py::hasattr(value, "mask") && py::hasattr(value, "filled")
+                               ? value.attr("astype")("float64").attr("filled")(std::nan(""))
+                               : py::reinterpret_borrow<py::object>(value);
+  f.z_nm = grid_of<double>(plain, argument);
   f.pitch_x_nm = reading.pitch_x_nm.value_or(1);
   f.pitch_y_nm = reading.pitch_y_nm.value_or(f.pitch_x_nm);
   for (double& z : f.z_nm.data()) {
     z *= reading.z_unit_nm.value_or(1);
     if (std::isfinite(z)) continue;
+    z = std::nan("");
     if (f.valid.empty()) f.valid = Mask(f.z_nm.width(), f.z_nm.height(), 1);
     f.valid.data()[static_cast<std::size_t>(&z - f.z_nm.data().data())] = 0;
   }

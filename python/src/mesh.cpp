@@ -53,6 +53,11 @@ Mesh make_mesh(py::handle vertices, py::handle triangles, const std::string& nam
   made.record = metadata_of(record);
   const auto places = triples<double>(vertices, "vertices");
   const auto corners = triples<std::int64_t>(triangles, "triangles");
+  const auto as_given = triples<double>(triangles, "triangles");
+  for (py::ssize_t i = 0; i < corners.size(); ++i)
+    if (static_cast<double>(corners.data()[i]) != as_given.data()[i])
+      throw InvalidInput("triangles", fmt::format("{} is no vertex", as_given.data()[i]),
+                         "Give whole numbers");
   made.mesh.vertices_nm.resize(static_cast<std::size_t>(places.shape(0)));
   for (py::ssize_t i = 0; i < places.shape(0); ++i)
     made.mesh.vertices_nm[static_cast<std::size_t>(i)] = {places.at(i, 0), places.at(i, 1),

@@ -6,7 +6,14 @@
 namespace surf::python {
 
 void add_specimen(py::handle part, io::SpecimenRequest& request, io::ShapesInMemory& shapes) {
-  if (PyList_Check(part.ptr()) || PyTuple_Check(part.ptr())) {
+  const bool is_list = PyList_Check(part.ptr()) || PyTuple_Check(part.ptr());
+  // Rows of numbers are heights.
+  const auto first = [&] { return py::object(part[py::int_(0)]); };
+  const bool is_rows = is_list && py::len(part) > 0 &&
+                       (PyList_Check(first().ptr()) || PyTuple_Check(first().ptr())) &&
+                       py::len(first()) > 0 &&
+                       PyNumber_Check(py::object(first()[py::int_(0)]).ptr());
+  if (is_list && !is_rows) {
     for (const py::handle one : part) add_specimen(one, request, shapes);
     return;
   }

@@ -39,15 +39,22 @@ py::object found_of(const workflow::SurveyedScan& s) {
 /// Scans in memory as they are; of files the names, as they are read one at a time.
 std::vector<py::object> given_scans(const py::object& given) {
   std::vector<py::object> all;
+  const bool is_list = PyList_Check(given.ptr()) || PyTuple_Check(given.ptr());
   const auto add = [&](const py::handle& one) {
     if (!is_path(one)) {
       all.push_back(py::reinterpret_borrow<py::object>(one));
       return;
     }
-    for (const fs::path& file : workflow::scans_of({path_of(one)}))
-      all.push_back(py::str(file.string()));
+    std::vector<fs::path> files;
+    try {
+      files = workflow::scans_of({path_of(one)});
+    } catch (const FileError& e) {  // of a list, the others are wanted all the same
+      if (!is_list) throw;
+      Call::warn(e.what());
+    }
+    for (const fs::path& file : files) all.push_back(py::str(file.string()));
   };
-  if (PyList_Check(given.ptr()) || PyTuple_Check(given.ptr()))
+  if (is_list)
     for (const py::handle one : given) add(one);
   else add(given);
   if (all.empty()) throw UsageError("scans", "there is none", "Give scans, or folders of scans");
@@ -105,7 +112,14 @@ void add_survey(py::module_& module) {
                   "Scans, folders of scans, or a list of them.", true, false},
                  {"csv", "PathLike", "A table to write, anew after each scan."}};
   f.result_type = "list[Findings]";
-  f.result = "For each scan its numbers; None where one is not known, and `problem` says why.";
+  f.result =
+      "For each scan that can be read: `file`, `shape`, `pitch_nm`, `tilt_deg` that was taken off, "
+      "`substrate_share` of the samples on the plane, `roughness_nm` (Sq of those alone), "
+      "`relief_nm` (from the 0.5th to the 99.5th percentile), `noise_nm`, `tip_radius_nm` (an "
+      "outer "
+      "bound) with `tip_radius_error_nm` (how far noise moves it), `tip_half_angle_deg`, "
+      "`broadening_nm` (what the tip adds on each side at half of the relief). None where one is "
+      "not known, and `problem` says why.";
   f.example = ">>> pandas.DataFrame(semsurf.survey('scans', tip_size=21))";
   workflow::TipParameters tip;
   f.takes<workflow::SurveyParameters>().takes<workflow::LevelParameters>();

@@ -37,6 +37,9 @@ std::vector<std::string> values_of(py::handle given, const Keyword& keyword) {
   const std::string subject = fmt::format("vary['{}']", keyword.name);
   if (PyUnicode_Check(given.ptr()))
     return workflow::parse_sweep_values(given.cast<std::string>(), subject);
+  if (!py::isinstance<py::iterable>(given))
+    throw UsageError(subject, "it is no list",
+                     "Give a list of values, or a text as '0deg:60deg:5deg'");
   std::vector<std::string> values;
   for (const py::handle one : py::iter(given)) {
     const std::vector<std::string> texts = texts_of(one, keyword);
@@ -64,6 +67,9 @@ Axes axes_of(const Call& call) {
     if (!can_vary(keyword.parameter))
       throw UsageError("vary", fmt::format("'{}' cannot be varied", keyword.name),
                        "Vary what says how the specimen is, and how its image is taken");
+    if (call.is_given(keyword.parameter))
+      throw UsageError(fmt::format("`{}`", keyword.parameter), "vary has it, too",
+                       "Leave one of them out");
     all.axes.push_back({keyword.name, values_of(values, keyword)});
     all.parameters.push_back(keyword.parameter);
   }
@@ -130,6 +136,17 @@ workflow::SweepJob job_of(const Call& call) {
   return job;
 }
 
+/// What a sweep says itself, and what is of checkpoints: finished runs are kept anyway.
+std::vector<std::string> not_of_sweeps() {
+  std::vector<std::string> names{"output"};
+  workflow::SimulateJob job;
+  for_each_parameter(job, [&](const Parameter& about, Field&) {
+    for (const char* beginning : {"job.checkpoint", "job.restart"})
+      if (about.name.starts_with(beginning)) names.push_back(about.name);
+  });
+  return names;
+}
+
 py::object sweep(const Call& call) {
   const workflow::SweepJob job = job_of(call);
   workflow::SweepSummary s;
@@ -166,9 +183,13 @@ void add_sweep(py::module_& module) {
                  {"format", "str | Sequence[str]", "Of the images: 'exr', 'tif', 'png', 'vti'."}};
   f.takes<workflow::SweepJob>()
       .takes<io::SpecimenRequest>({}, {"specimen.input"})
-      .takes<workflow::SimulateJob>({}, {"output"});
+      .takes<workflow::SimulateJob>({}, not_of_sweeps());
   f.result_type = "Findings";
-  f.result = "The `table`, how many runs are `done`, and how many of them were there before.";
+  f.result =
+      "The file `table` (CSV: run, what varies as it was given, file, and for each detector the "
+      "mean "
+      "yield and its standard error), how many runs are `done`, and how many of them were `found` "
+      "from before.";
   f.example = ">>> semsurf.sweep('mesa80.toml', vary={'tilt': [0, 30, 60]}, output='tilts')";
   define(module, f, sweep);
 }

@@ -111,7 +111,7 @@ semsurf_cli_usage(mesh_thickness "--thickness.*Add --solid" mesh cube.off --thic
 semsurf_cli_usage(mesh_repair_scan "--repair: block.gsf is a scan" mesh block.gsf --repair -o out.obj)
 semsurf_cli_usage(mesh_channel "a mesh has no channel 'SE'" mesh cube.off:SE -o out.obj)
 semsurf_cli_unusable(mesh_solid_closed "it is closed already" mesh cube.off --solid -o out.obj)
-semsurf_cli_unusable(mesh_holes "is invalid.*fill them" mesh scan.txt -o out.glb)
+semsurf_cli_unusable(mesh_holes "is invalid.*fill them: --spikes" mesh scan.txt -o out.glb)
 semsurf_cli_unusable(mesh_map_elsewhere "says nothing at" mesh cube.off --scalar block.gsf -o out.glb)
 semsurf_cli_unusable(mesh_drape_scale "Give their size, as --pixel-size" mesh block.gsf --drape four.png -o out.glb)
 semsurf_cli_usage(mesh_repairs "--max-hole.*--repair" mesh cube.off --max-hole 3nm -o out.ply)
@@ -145,6 +145,7 @@ semsurf_cli_unusable(no_mott_table "no Mott table for Zn .Z = 30.*elastic=browni
 
 semsurf_cli_usage(level_input "no scan is given" level -o flat.gsf)
 semsurf_cli_usage(level_output "--output.*no output" level block.gsf)
+semsurf_cli_usage(tip_size_twice "--size: it is given twice" tip block.gsf --size 5 --size 7 -o tip.gsf)
 semsurf_cli_usage(level_one_file "2 scans do not go into one file" level block.gsf plane.gsf -o flat.gsf)
 semsurf_cli_usage(level_method "--level-method: .magic. is not known. Choose hough, plane" level block.gsf --level-method magic -o flat.gsf)
 semsurf_cli_usage(level_rows "median or difference" level block.gsf --rows mean -o flat.gsf)

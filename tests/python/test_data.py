@@ -4,7 +4,7 @@ import numpy
 import pytest
 
 import semsurf
-from conftest import CUBE, FACES
+from conftest import CUBE, FACES, bumps
 
 
 def letter():
@@ -122,3 +122,39 @@ def test_findings_are_attributes(heights):
     assert "tilt_deg" in repr(found) and "<table>" in found._repr_html_()
     with pytest.raises(AttributeError, match="tilt_deg"):
         found.nothing
+
+
+def test_what_is_masked_or_infinite_is_a_hole():
+    masked = numpy.ma.masked_array(numpy.zeros((20, 30)), False)
+    masked[3, 4] = numpy.ma.masked
+    masked.data[3, 4] = 1e6
+    infinite = numpy.zeros((20, 30))
+    infinite[3, 4] = numpy.inf
+    for given in (masked, infinite):
+        heights = semsurf.HeightField(given)
+        assert not heights.valid[3, 4] and heights.valid.sum() == 599 and numpy.isnan(heights.heights[3, 4])
+        with pytest.raises(semsurf.InvalidInput, match="column 4, row 3 is invalid"):
+            semsurf.simulate(heights, material="Si", size=(8, 6), electrons=2)
+
+
+def test_a_hole_is_filled_and_nothing_else():
+    z = bumps()
+    z[10:13, 20:23] = numpy.nan
+    filled = semsurf.clean(semsurf.HeightField(z, pitch=2), spikes="9:1um", fill_holes=True)
+    assert filled.valid.all() and numpy.isfinite(filled.heights).all()
+    there = numpy.isfinite(z)
+    assert numpy.array_equal(filled.heights[there], z[there])
+
+
+def test_lists_of_numbers_are_heights():
+    image = semsurf.simulate([[0, 1, 0], [2, 3, 0], [0, 1, 0]], material="Si", height_pitch="5nm", size=(4, 4), electrons=2)
+    assert image.shape == (4, 4)
+
+
+@pytest.mark.parametrize("call, what", [
+    (lambda: semsurf.HeightField(numpy.zeros((0, 0))), "empty"),
+    (lambda: semsurf.Mesh(numpy.eye(3), [[0, 1.5, 2]]), "1.5 is no vertex"),
+])
+def test_arrays_that_cannot_be(call, what):
+    with pytest.raises(semsurf.InvalidInput, match=what):
+        call()

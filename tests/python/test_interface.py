@@ -161,3 +161,15 @@ def test_materials():
     assert semsurf.materials(material="Si") == all_of_them.Si and all_of_them.Si.density_g_cm3 == pytest.approx(2.33, abs=0.01)
     with pytest.raises(semsurf.UsageError, match="Sj"):
         semsurf.materials(material="Sj")
+
+
+@pytest.mark.parametrize("call, field", [
+    (lambda: semsurf.simulate(), "specimen"), (lambda: semsurf.level(None), "scan"),
+    (lambda: semsurf.erode(bumps()), "tip"), (lambda: semsurf.level(bumps(), progress=3), "progress"),
+    (lambda: semsurf.view([], "a.html"), "items"),
+    (lambda: semsurf.sweep("samples/cube.toml", vary={}, output="a"), "vary"),
+])
+def test_errors_name_arguments_that_are_no_keywords(call, field):
+    with pytest.raises(semsurf.UsageError) as caught:
+        call()
+    assert caught.value.field == field

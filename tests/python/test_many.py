@@ -30,6 +30,9 @@ def test_survey_goes_on_after_a_scan_that_cannot_be_read(tmp_path, heights):
     with pytest.warns(semsurf.Doubt, match="nowhere"):
         rows = semsurf.survey([tmp_path / "nowhere.gsf", tmp_path / "good.gsf", 2 * heights.heights], no_tip=True)
     assert len(rows) == 2 and rows[0].tip_radius_nm is None and rows[0].file.endswith("good.gsf")
+    (tmp_path / "empty").mkdir()
+    with pytest.warns(semsurf.Doubt, match="empty"):
+        assert len(semsurf.survey([tmp_path / "empty", heights], no_tip=True)) == 1
     with pytest.raises(semsurf.FileError, match="nowhere"):
         semsurf.survey(tmp_path / "nowhere.gsf")
 
@@ -56,6 +59,14 @@ def test_sweep_says_what_is_wrong_before_it_begins(tmp_path, samples, vary, what
     with pytest.raises(semsurf.UsageError, match=what):
         semsurf.sweep(samples / "cube.toml", vary=vary, output=tmp_path / "ours", size=(8, 8))
     assert not (tmp_path / "ours").exists()
+
+
+def test_sweep_takes_each_setting_once(tmp_path, samples):
+    for keywords, what in (({"tilt": 5}, "vary has it"), ({"restart": True}, "no such argument")):
+        with pytest.raises(semsurf.UsageError, match=what):
+            semsurf.sweep(samples / "cube.toml", vary={"tilt": [0, 30]}, output=tmp_path / "ours", **keywords)
+    with pytest.raises(semsurf.UsageError, match="no list"):
+        semsurf.sweep(samples / "cube.toml", vary={"tilt": 3}, output=tmp_path / "ours")
 
 
 def test_sweep_takes_no_specimen_in_memory(tmp_path, cube):

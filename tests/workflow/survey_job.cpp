@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "off.h"
 #include "surf/afm/morphology.h"
 #include "surf/afm/noise.h"
 #include "surf/afm/tip_shapes.h"
@@ -67,6 +68,19 @@ TEST(Survey, AFlatScanHasNoTipAndSaysSo) {
   const SurveyedScan s =
       survey_scan(scan_of({{pitch_nm, pitch_nm, 0, 0}, Grid<double>(128, 96)}, noise_nm), {});
   EXPECT_NEAR(*s.noise_nm, noise_nm, 0.02);
+  EXPECT_FALSE(s.problem.empty());
+}
+
+// A calibration grating's plateaus have no sharp end.
+TEST(Survey, ARadiusThatNoiseMovesByMoreIsAProblem) {
+  const auto path = test::test_data("afm/CL_0deg_xcal.spm");
+  if (!path) GTEST_SKIP() << "SEMSURF_TEST_DATA has no such scan: real files are not tested";
+  const HeightField scan = io::read_height_field(*path).field;
+  const SurveyedScan s = survey_scan(scan, {.draws = 4});
+  ASSERT_TRUE(s.tip_radius_nm && s.tip_radius_error_nm);
+  EXPECT_EQ(*s.tip_radius_error_nm > *s.tip_radius_nm,
+            s.problem.find("radius is not known") != std::string::npos)
+      << *s.tip_radius_nm << " " << *s.tip_radius_error_nm << " " << s.problem;
   EXPECT_FALSE(s.problem.empty());
 }
 

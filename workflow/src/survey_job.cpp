@@ -117,6 +117,10 @@ void survey_tip(const HeightField& levelled, const std::vector<double>& sorted,
         radii.push_back(*radius);
     }
     out.tip_radius_error_nm = scatter(radii);
+    if (out.tip_radius_error_nm && *out.tip_radius_error_nm > *out.tip_radius_nm)
+      add_problem(out, fmt::format("the tip's radius is not known: noise moves it by {}, more than "
+                                   "it is",
+                                   format_length(*out.tip_radius_error_nm)));
   }
   const double half_nm =
       0.5 * (quantile(sorted, lowest_share) + quantile(sorted, 1 - lowest_share));

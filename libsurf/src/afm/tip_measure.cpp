@@ -17,6 +17,9 @@
 namespace surf {
 namespace {
 
+/// An end that falls by less than this share of its reach is flat.
+constexpr double flat_share = 1e-3;
+
 struct Sample {
   double x, y, z;
 };
@@ -107,6 +110,12 @@ void fit_paraboloid(const std::vector<Sample>& samples, TipMeasures& out) {
   }
   out.radius_residual_nm = std::sqrt(sum / static_cast<double>(rows.size()));
   const double mean = c[3] + c[5], half = std::hypot(c[3] - c[5], c[4]);
+  // Rounding is no curvature.
+  if (-std::ranges::min(samples, {}, &Sample::z).z < flat_share * reach) {
+    out.radius_nm = out.smallest_radius_nm = out.largest_radius_nm =
+        std::numeric_limits<double>::infinity();
+    return;
+  }
   const double flat = 1e-12 * std::max(1e-300, std::abs(mean) + half + 1e-3 / reach);
   out.radius_nm = radius_of(mean, flat);
   out.smallest_radius_nm = radius_of(mean + half, flat);

@@ -10,8 +10,8 @@
 
 #include "core/argument.h"
 #include "mesh/lattice_delaunay.h"
-#include "mesh/whole_field.h"
 #include "surf/core/error.h"
+#include "surf/mesh/height_field_mesh.h"
 
 namespace surf {
 namespace {

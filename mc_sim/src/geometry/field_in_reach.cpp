@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surf/mesh/height_field_mesh.h"
+
 namespace surf::mc {
 
 namespace {
@@ -16,6 +18,8 @@ double reach_nm(const Medium& medium, const Beam& beam) {
 
 HeightField field_in_reach(const HeightFieldBody& body, const Scan& scan, double reach_nm) {
   const HeightField& f = body.field;
+  require_no_holes(
+      f);  // before the field is larger, so that it names the samples as they are given
   // The scan's corners, wherever a tilted beam may bring them, plus the electrons' reach.
   const double half = 0.5 * std::hypot(scan.width * scan.pixel_x_nm, scan.height * scan.pixel_y_nm);
   const auto margin = [&](double center, double lower, double upper) {

@@ -68,6 +68,17 @@ TEST(MeasureTip, OfAFlatEndTheRadiusIsInfinite) {
   EXPECT_FALSE(m.half_angle_rad);
 }
 
+TEST(MeasureTip, RoundingIsNoRadius) {
+  Tip tip{{2, 2}, Grid<double>(15, 15, 0.0), 7, 7};
+  for (int y = 0; y < 15; ++y)
+    for (int x = 0; x < 15; ++x) {
+      const double r = 2 * std::hypot(x - 7, y - 7);
+      tip.z_nm(x, y) = -(r < 8 ? 1e-6 * r : r - 8);  // a plateau
+    }
+  EXPECT_TRUE(std::isinf(measure_tip(tip).radius_nm));
+  EXPECT_LT(measure_tip(tip, {.fit_depth_nm = 8}).radius_nm, 30);
+}
+
 TEST(MeasureTip, Refuses) {
   EXPECT_THROW(measure_tip({{1, 1}, Grid<double>(2, 2, 0.0), 0, 0}), InvalidInput);
   EXPECT_THROW(measure_tip(parabolic_tip(5, {}), {.fit_depth_nm = -1}), InvalidInput);

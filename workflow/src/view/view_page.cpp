@@ -260,7 +260,7 @@ void ViewPage::add_scalar(const FileChannel& input) {
 
 void ViewPage::add_scalar(const Image& image, const std::string& channel, const std::string& of) {
   if (page_.surfaces.empty())
-    throw UsageError("`view.scalar`", "there is no surface to lay it on", "Give a scan or a mesh");
+    throw UsageError("view", "there is no surface to lay a map on", "Give a scan or a mesh");
   std::string name = channel;
   const auto taken = [&](const std::string& wanted) {
     for (const io::WebSurface& surface : page_.surfaces)
@@ -283,7 +283,7 @@ void ViewPage::add_scalar(const Image& image, const std::string& channel, const 
 
 void ViewPage::lay(io::WebImage picture, const std::string& channel) {
   if (page_.surfaces.empty())
-    throw UsageError("`view.drape`", "there is no surface to lay it on", "Give a scan or a mesh");
+    throw UsageError("view", "there is no surface to lay a picture on", "Give a scan or a mesh");
   if (std::ranges::none_of(page_.surfaces, [&](const io::WebSurface& surface) {
         return lies_over(picture.image, surface);
       }))

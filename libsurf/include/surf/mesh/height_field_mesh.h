@@ -7,6 +7,10 @@
 
 namespace surf {
 
+/// Throws InvalidInput for a damaged field or one with an invalid sample, Unsupported if there are
+/// too many samples for 32-bit numbers.
+void require_no_holes(const HeightField& field);
+
 /// The open sheet of triangles over the samples, with normals up. Each cell is split from
 /// lower-left to upper-right. Throws InvalidInput if a sample is invalid, because a hole has no
 /// height.

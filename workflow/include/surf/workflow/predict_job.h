@@ -55,8 +55,8 @@ PredictSummary run(const PredictJob& job, const Reporter& reporter = {});
 /// was trained on.
 std::vector<std::string> prediction_warnings(const TrainedModel& model, const HeightField& field);
 
-/// What a scene file says of the specimen and the beam. Throws UsageError where the specimen is more
-/// than a height field, or the beam is tilted; FileError.
+/// What a scene file says of the specimen and the beam. Throws UsageError where the specimen is
+/// more than a height field, or the beam is tilted; FileError.
 void take_scene(const std::filesystem::path& scene, PredictJob& job);
 
 }  // namespace surf::workflow
