@@ -78,11 +78,10 @@ void require_no_holes(const HeightField& field) {
   for (int row = 0; row < field.z_nm.height(); ++row) {
     for (int column = 0; column < field.z_nm.width(); ++column) {
       if (field.is_valid(column, row)) continue;
-      throw InvalidInput("height field",
-                         fmt::format("the sample at column {}, row {} is invalid", column, row),
-                         "A surface has no holes: crop, or fill them: `clean.spikes=9:1um` with "
-                         "`clean.fill_holes` "
-                         "leaves all other heights");
+      throw InvalidInput(
+          "height field", fmt::format("the sample at column {}, row {} is invalid", column, row),
+          "A surface has no holes: crop, or fill them (semsurf clean --spikes 9:1um --fill-holes, "
+          "which leaves all other heights)");
     }
   }
   if (static_cast<double>(field.z_nm.size()) > max_samples) {
