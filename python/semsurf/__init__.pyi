@@ -221,15 +221,6 @@ def info(
     """What is in a mesh, an image, a scan, a model or a scene file."""
 
 
-def write_mesh(
-    path: PathLike,
-    mesh: Mesh,
-    *,
-    unit: str | None = None,
-) -> None:
-    """Write a mesh to a file."""
-
-
 def simulate(
     specimen: PathLike | Mesh | HeightField | ArrayLike | Sequence,
     *,
@@ -501,6 +492,30 @@ def simplify(
     threads: int | None = None,
 ) -> Mesh:
     """Simplify a mesh: fewer triangles, nowhere farther off than is proven."""
+
+
+def smooth(
+    mesh: PathLike | Mesh,
+    *,
+    iterations: int | None = None,
+    progress: bool | Callable[[float, float, str], object] | None = None,
+    unit: str | None = None,
+    override_unit: bool = False,
+    threads: int | None = None,
+) -> Mesh:
+    """Smooth a mesh without shrinking it (Taubin)."""
+
+
+def solid(
+    mesh: PathLike | Mesh,
+    *,
+    thickness: float | str | None = None,
+    progress: bool | Callable[[float, float, str], object] | None = None,
+    unit: str | None = None,
+    override_unit: bool = False,
+    threads: int | None = None,
+) -> Mesh:
+    """Give an open sheet, as `mesh_heights` makes it, walls and a base."""
 
 
 def mesh_heights(
@@ -998,3 +1013,23 @@ def compare(
     pixel_size: float | str | None = None,
 ) -> Findings:
     """Where a surface differs from another beyond their errors."""
+
+
+def write_mesh(
+    path: PathLike,
+    mesh: Mesh | PathLike | Sequence | dict,
+    *,
+    scalars: dict[str, ArrayLike | Image | tuple[Image, str]] | None = None,
+    drape: Image | PathLike | tuple[Image, str] | None = None,
+    unit: str | None = None,
+) -> None:
+    """Write a mesh, or several, to a file."""
+
+
+def read_bodies(
+    path: PathLike,
+    *,
+    unit: str | None = None,
+    override_unit: bool = False,
+) -> list[Mesh]:
+    """Read the bodies of a mesh file, each by itself."""

@@ -106,5 +106,6 @@ void add_sweep(py::module_& module);
 void add_chart(py::module_& module);
 void add_view(py::module_& module);
 void add_compare(py::module_& module);
+void add_surfaces(py::module_& module);
 
 }  // namespace surf::python

@@ -119,15 +119,6 @@ py::object read_mesh(const Call& call) {
   return object_of(mesh_of(call["path"], {request.mesh_unit_nm, request.override_unit}, "path"));
 }
 
-py::object write_mesh(const Call& call) {
-  const Mesh mesh = mesh_of(call["mesh"], {}, "mesh");
-  const std::string path = path_of(call["path"]);
-  const auto request = call.told<io::SpecimenRequest>();
-  const py::gil_scoped_release unlocked;
-  io::write_mesh(path, mesh.mesh, request.mesh_unit_nm.value_or(1));
-  return py::none();
-}
-
 py::object info(const Call& call) {
   const auto request = call.told<io::SpecimenRequest>();
   const auto materials = call.told<io::MaterialChoice>();
@@ -218,13 +209,6 @@ void add_files(py::module_& module) {
              .takes<io::SpecimenRequest>({}, all_but_units)
              .takes<io::MaterialChoice>(),
          info);
-  std::vector<std::string> all_but_unit = all_but_units;
-  all_but_unit.push_back("specimen.override_unit");
-  define(module,
-         writer("write_mesh", "Write a mesh to a file.",
-                ".stl .obj .ply .off .glb .gltf .3mf .vtp .vtm", {"mesh", "Mesh", "The mesh."})
-             .takes<io::SpecimenRequest>({}, all_but_unit),
-         write_mesh);
 }
 
 }  // namespace surf::python

@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Checking, repairing and simplifying meshes, and meshes of heights.
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "arrays.h"
 #include "data.h"
 #include "surf/core/error.h"
+#include "surf/core/units.h"
 #include "surf/io/scan_parameters.h"
 #include "surf/io/sim/specimen_request.h"
 #include "surf/mesh/check_mesh.h"
 #include "surf/mesh/height_field_mesh.h"
 #include "surf/mesh/repair_mesh.h"
+#include "surf/mesh/sheet_solid.h"
 #include "surf/mesh/simplify_mesh.h"
+#include "surf/mesh/smooth_mesh.h"
 #include "surf/mesh/thin_height_field.h"
 #include "surf/workflow/step_record.h"
 
@@ -143,6 +150,45 @@ py::object mesh_heights(const Call& call) {
   return object_of(std::move(made));
 }
 
+int whole_of(const py::object& value, const char* argument, int otherwise) {
+  if (value.is_none()) return otherwise;
+  if (!PyLong_Check(value.ptr()))
+    throw UsageError(argument, "it is no whole number", "Give 10, say");
+  return value.cast<int>();
+}
+
+py::object smooth(const Call& call) {
+  Mesh mesh = given_mesh(call);
+  SmoothOptions options;
+  options.iterations = whole_of(call["iterations"], "iterations", options.iterations);
+  call.work([&](const workflow::Reporter&) { mesh.mesh = smooth_mesh(mesh.mesh, options); });
+  mesh.record = workflow::step_record(
+      "smooth", {{"smooth.iterations", std::to_string(options.iterations)}}, files_of(mesh));
+  mesh.file.clear();
+  return object_of(std::move(mesh));
+}
+
+py::object solid(const Call& call) {
+  Mesh mesh = given_mesh(call);
+  const Box box = bounds(mesh.mesh);
+  const Vec3 size = box.size_nm();
+  double thickness_nm = 0.05 * std::max(size.x, size.y);
+  if (call.has("thickness")) {
+    Keyword keyword;
+    keyword.parameter = "thickness";
+    const std::vector<std::string> texts = texts_of(call["thickness"], keyword);
+    thickness_nm = parse_length_nm(texts.front(), "thickness");
+  }
+  if (!(thickness_nm > 0)) throw UsageError("thickness", "it is not above 0", "Give 50nm, say");
+  call.work([&](const workflow::Reporter& reporter) {
+    mesh.mesh = sheet_solid(mesh.mesh, box.lower_nm.z - thickness_nm, reporter.watch());
+  });
+  mesh.record = workflow::step_record(
+      "solid", {{"solid.thickness_nm", fmt::format("{:g}", thickness_nm)}}, files_of(mesh));
+  mesh.file.clear();
+  return object_of(std::move(mesh));
+}
+
 Function of_mesh(const char* name, const char* summary) {
   Function f{.name = name, .summary = summary, .arguments = {mesh_argument}};
   f.result_type = "Mesh";
@@ -167,6 +213,20 @@ void add_meshes(py::module_& module) {
   f.example = ">>> small = semsurf.simplify('grain.ply', mesh_tolerance='1nm')";
   define(module, f.takes<SimplifyOptions>().takes<io::SpecimenRequest>({}, all_but_units),
          simplify);
+
+  f = of_mesh("smooth", "Smooth a mesh without shrinking it (Taubin).");
+  f.arguments.push_back({"iterations", "int", "Steps in and out; 10 if not given."});
+  f.result = "The smoothed mesh, of the same triangles.";
+  define(module, f.takes<io::SpecimenRequest>({}, all_but_units), smooth);
+
+  f = of_mesh("solid", "Give an open sheet, as `mesh_heights` makes it, walls and a base.");
+  f.arguments.push_back({"thickness", "float | str",
+                         "Of the base below the lowest place, nm; a twentieth of the width if "
+                         "not given."});
+  f.result = "A closed mesh.";
+  f.example =
+      ">>> semsurf.write_mesh('print.stl', semsurf.solid(semsurf.mesh_heights('scan.gwy')))";
+  define(module, f.takes<io::SpecimenRequest>({}, all_but_units), solid);
 
   Function heights{.name = "mesh_heights",
                    .summary = "The surface of heights as a mesh, thinned where that is asked for."};

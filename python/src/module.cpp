@@ -33,6 +33,7 @@ PYBIND11_MODULE(_semsurf, module) {
   add_chart(module);
   add_view(module);
   add_compare(module);
+  add_surfaces(module);
   module.attr("__version__") = surf::workflow::version();
   module.def("described_functions", &described_functions);
   module.def("set_module_folder", &surf::set_module_folder);

@@ -51,3 +51,52 @@ def test_parts_of_other_libraries(cube):
     faces = numpy.column_stack([numpy.full(12, 3), FACES]).ravel()
     again = semsurf.Mesh(CUBE.astype(numpy.float32), faces.reshape(-1, 4)[:, 1:])
     assert numpy.array_equal(again.triangles, cube.triangles)
+
+
+def test_several_bodies_with_values_and_a_picture(tmp_path, cube, samples):
+    other = semsurf.Mesh(cube.vertices + [200, 0, 0], cube.triangles)
+    path = tmp_path / "two.vtm"
+    semsurf.write_mesh(path, {"left": cube, "right": other}, scalars={"high": numpy.arange(8)})
+    bodies = semsurf.read_bodies(path)
+    assert [body.name for body in bodies] == ["left", "right"]
+    assert all(numpy.array_equal(body.found.scalars.high, numpy.arange(8)) for body in bodies)
+    assert bodies[1].vertices[:, 0].min() == 200
+    image = semsurf.Image({"SE": numpy.outer(numpy.arange(12), numpy.ones(12))}, pitch=10, origin=(-5, -5))
+    semsurf.write_mesh(tmp_path / "cube.glb", cube, drape=(image, "SE"))
+    assert (tmp_path / "cube.glb").read_bytes()[:4] == b"glTF"
+    semsurf.write_mesh(tmp_path / "cube.ply", cube, scalars={"seen": (image, "SE")})
+    seen = semsurf.read_bodies(tmp_path / "cube.ply")[0].found.scalars.seen
+    assert seen == pytest.approx((cube.vertices[:, 1] + 5) / 10)       # between pixels in proportion
+
+
+@pytest.mark.parametrize("name, keywords, what", [
+    ("a.stl", {"scalars": {"a": numpy.zeros(8)}}, "hold no scalars"),
+    ("a.ply", {"scalars": {"a": numpy.zeros(7)}}, "8 numbers"),
+    ("a.ply", {"scalars": {"a": numpy.full(8, numpy.nan)}}, "says nothing"),
+    ("a.ply", {"scalars": [1, 2]}, "no dictionary"),
+    ("a.glb", {"drape": (semsurf.Image({"a": numpy.ones((4, 4))}), "b")}, "no channel 'b'"),
+])
+def test_what_cannot_be_laid_on(tmp_path, cube, name, keywords, what):
+    with pytest.raises(semsurf.Error, match=what):
+        semsurf.write_mesh(tmp_path / name, cube, **keywords)
+    assert not (tmp_path / name).exists()
+
+
+def test_smoothing_keeps_heights_but_not_their_noise(samples):
+    y, x = numpy.mgrid[0:40, 0:40] * 2.0
+    rough = semsurf.HeightField(numpy.random.default_rng(2).normal(0, 1, x.shape) + 20, pitch=2)
+    mesh = semsurf.solid(semsurf.mesh_heights(rough), thickness="30nm")
+    assert semsurf.check_mesh(mesh).closed_and_oriented
+    smooth = semsurf.smooth(mesh, iterations=20)
+    inner = numpy.all((mesh.vertices[:, :2] > 15) & (mesh.vertices[:, :2] < 63), axis=1)     # edges are rounded
+    top = inner & (mesh.vertices[:, 2] > 10)
+    assert smooth.vertices[top, 2].std() < 0.5 * mesh.vertices[top, 2].std()
+    assert smooth.vertices[top, 2].mean() == pytest.approx(mesh.vertices[top, 2].mean(), abs=0.1)
+
+
+def test_a_solid_is_the_programs(tmp_path, program, scan):
+    program("mesh", scan, "--solid", "--thickness", "40nm", "--plain", "-o", "theirs.ply", "--height-pitch", "2nm")
+    ours = semsurf.solid(semsurf.mesh_heights(scan, height_pitch="2nm"), thickness=40)
+    theirs = semsurf.read_mesh(tmp_path / "theirs.ply")
+    assert len(ours.triangles) == len(theirs.triangles)
+    assert semsurf.check_mesh(ours).volume_nm3 == pytest.approx(semsurf.check_mesh(theirs).volume_nm3, rel=1e-6)
