@@ -8,6 +8,13 @@
 
 namespace surf::cli {
 
+void add_height_reading(CLI::App& app, BoundParameters& bound, const std::string& group) {
+  bound.looks["scan.height_channel"].former = {"--channel"};
+  bound.looks["scan.height_unit"].former = {"--z-unit"};
+  bound.looks["scan.height_pitch"].former = {"--pixel-size"};
+  bound.add<io::HeightReadOptions>(app, group);
+}
+
 void add_scan_input(CLI::App& app, BoundParameters& bound, std::string& file,
                     const std::string& group) {
   CLI::Option* input =
@@ -15,10 +22,7 @@ void add_scan_input(CLI::App& app, BoundParameters& bound, std::string& file,
                     ->type_name("FILE"),
                 FileRole::read);
   if (group.empty()) input->group("");
-  bound.looks["scan.height_channel"].former = {"--channel"};
-  bound.looks["scan.height_unit"].former = {"--z-unit"};
-  bound.looks["scan.height_pitch"].former = {"--pixel-size"};
-  bound.add<io::HeightReadOptions>(app, group);
+  add_height_reading(app, bound, group);
 }
 
 io::HeightFieldFile read_scan(const std::string& file, const io::HeightReadOptions& options,

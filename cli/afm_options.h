@@ -11,6 +11,9 @@
 
 namespace surf::cli {
 
+/// --height-channel, --height-unit and --height-pitch, with their former names.
+void add_height_reading(CLI::App& app, BoundParameters& bound, const std::string& group);
+
 /// INPUT, --height-channel, --height-unit and --height-pitch. A `group` of "" hides them.
 void add_scan_input(CLI::App& app, BoundParameters& bound, std::string& file,
                     const std::string& group = "Options");

@@ -7,10 +7,10 @@
 #include <map>
 #include <system_error>
 
+#include "afm_options.h"
 #include "failure.h"
 #include "surf/core/error.h"
 #include "surf/io/height_field_file.h"
-#include "surf/io/scan_parameters.h"
 #include "surf/workflow/survey_job.h"
 
 namespace surf::cli {
@@ -31,10 +31,7 @@ void add_scan_inputs(CLI::App& app, BoundParameters& bound, std::vector<std::str
                            "of them")
                 ->type_name("FILE"),
             FileRole::read);
-  bound.looks["scan.height_channel"].former = {"--channel"};
-  bound.looks["scan.height_unit"].former = {"--z-unit"};
-  bound.looks["scan.height_pitch"].former = {"--pixel-size"};
-  bound.add<io::HeightReadOptions>(app, "Options");
+  add_height_reading(app, bound, "Options");
 }
 
 std::vector<BatchStep> batch_of(const std::vector<std::string>& scans,

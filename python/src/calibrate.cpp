@@ -14,13 +14,6 @@
 namespace surf::python {
 namespace {
 
-py::object measured(double value, double standard_error) {
-  py::dict d;
-  d["value"] = value;
-  d["stderr"] = standard_error;
-  return findings(d);
-}
-
 py::object found_of(const Calibration& c) {
   py::dict d, gains;
   for (std::size_t i = 0; i < c.channels.size(); ++i)

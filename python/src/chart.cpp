@@ -11,18 +11,6 @@
 namespace surf::python {
 namespace {
 
-py::list texts_of_all(const std::vector<std::string>& texts) {
-  py::list all;
-  for (const std::string& text : texts) all.append(text);
-  return all;
-}
-
-py::list files_of(const std::vector<std::filesystem::path>& files) {
-  py::list all;
-  for (const auto& file : files) all.append(file.string());
-  return all;
-}
-
 py::object found_of(const workflow::ChartPoint& p) {
   py::dict d, rms;
   d["id"] = p.id;
@@ -85,8 +73,8 @@ py::object of_sample(const Call& call, const std::string& folder) {
   d["reconstructions"] = found_of_all(s.reconstructions);
   d["eroded_nm"] = s.eroded_nm;
   d["floor_nm"] = s.floor_nm;
-  d["left_out"] = texts_of_all(s.left_out);
-  d["written"] = files_of(s.written);
+  d["left_out"] = list_of(s.left_out);
+  d["written"] = list_of(s.written);
   return findings(d);
 }
 
@@ -120,8 +108,8 @@ py::object of_scene(const Call& call) {
   }
   d["choices"] = choices;
   d["compared"] = s.compared;
-  d["left_out"] = texts_of_all(s.left_out);
-  d["written"] = files_of(s.written);
+  d["left_out"] = list_of(s.left_out);
+  d["written"] = list_of(s.written);
   return findings(d);
 }
 

@@ -50,10 +50,9 @@ py::object found_of(const ChangedPlace& p) {
 py::object found_of(const workflow::CompareSummary& s) {
   py::dict d;
   d["verdict"] = workflow::name(s.verdict);
-  py::list reasons, places, written;
+  py::list reasons, places;
   for (const std::string& reason : s.reasons) reasons.append(with_keywords(reason));
   for (const ChangedPlace& place : s.changes.places) places.append(found_of(place));
-  for (const auto& file : s.written) written.append(file.string());
   d["reasons"] = reasons;
   d["places"] = places;
   d["unit"] = s.unit;
@@ -79,7 +78,7 @@ py::object found_of(const workflow::CompareSummary& s) {
     d["stderr"] = array_of(s.changes.deviation);
     d["probability"] = array_of(s.changes.probability);
   }
-  d["written"] = written;
+  d["written"] = list_of(s.written);
   return findings(d);
 }
 
@@ -137,10 +136,7 @@ void add_compare(py::module_& module) {
                   "Likewise, or an SEM image.", true, false}};
   f.takes<workflow::CompareJob>()
       .takes<io::MaterialChoice>()
-      .takes<io::SpecimenRequest>(
-          {}, {"specimen.input", "specimen.material", "specimen.materials", "specimen.substrate",
-               "specimen.substrate_z", "specimen.edge", "scan.height_channel", "scan.height_unit",
-               "scan.height_pitch"})
+      .takes<io::SpecimenRequest>({}, all_but_units)
       .takes<io::HeightReadOptions>()
       .takes<io::SemReadOptions>();
   f.result_type = "Findings";

@@ -60,6 +60,16 @@ py::object object_of(T made) {
 
 /// A dictionary whose values are attributes, too (semsurf._results.Findings).
 py::object findings(const py::dict& values);
+/// Findings of `value` and `stderr`.
+py::object measured(double value, double standard_error);
+py::list list_of(const std::vector<std::string>& texts);
+py::list list_of(const std::vector<std::filesystem::path>& files);
+
+/// Parameters of a specimen but for the unit of its meshes, for functions of meshes.
+inline const std::vector<std::string> all_but_units{
+    "specimen.input",      "specimen.material",    "specimen.materials",
+    "specimen.substrate",  "specimen.substrate_z", "specimen.edge",
+    "scan.height_channel", "scan.height_unit",     "scan.height_pitch"};
 
 /// "2nm", 2 or (2, 3). Throws UsageError.
 Pitch pitch_of(py::handle value);
@@ -75,6 +85,13 @@ Heights heights_of(py::handle value, const io::HeightReadOptions& reading,
                    const std::string& argument);
 Picture picture_of(py::handle value, const std::string& argument);
 TipShape tip_of(py::handle value, const std::string& argument);
+
+/// An image and one of its channels: an image or (image, channel).
+struct ChosenChannel {
+  Picture picture;
+  std::string channel;
+};
+ChosenChannel channel_of(const py::object& value, const std::string& argument);
 Mesh mesh_of(py::handle value, const io::MeshUnit& unit, const std::string& argument);
 
 /// An image of the scan's size, in a file or an array, from which a mask is made: `use` and

@@ -148,12 +148,6 @@ Function writer(const char* name, const char* summary, const char* formats, Argu
   return f;
 }
 
-/// The keywords of a mesh's unit.
-const std::vector<std::string> all_but_units{
-    "specimen.input",      "specimen.material",    "specimen.materials",
-    "specimen.substrate",  "specimen.substrate_z", "specimen.edge",
-    "scan.height_channel", "scan.height_unit",     "scan.height_pitch"};
-
 }  // namespace
 
 void add_files(py::module_& module) {

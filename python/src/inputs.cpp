@@ -33,6 +33,25 @@ py::object findings(const py::dict& values) {
   return py::module_::import("semsurf._results").attr("Findings")(values);
 }
 
+py::object measured(double value, double standard_error) {
+  py::dict d;
+  d["value"] = value;
+  d["stderr"] = standard_error;
+  return findings(d);
+}
+
+py::list list_of(const std::vector<std::string>& texts) {
+  py::list all;
+  for (const std::string& text : texts) all.append(text);
+  return all;
+}
+
+py::list list_of(const std::vector<std::filesystem::path>& files) {
+  py::list all;
+  for (const auto& file : files) all.append(file.string());
+  return all;
+}
+
 bool is_path(py::handle value) {
   return PyUnicode_Check(value.ptr()) || py::hasattr(value, "__fspath__");
 }
@@ -119,6 +138,19 @@ Picture picture_of(py::handle value, const std::string& argument) {
   }
   picture.image.channels = {{"signal", "1", grid_of<float>(value, argument)}};
   return picture;
+}
+
+ChosenChannel channel_of(const py::object& value, const std::string& argument) {
+  const bool is_pair = PyTuple_Check(value.ptr()) && py::len(value) == 2;
+  const auto pair = is_pair ? value.cast<py::tuple>() : py::tuple();
+  ChosenChannel chosen;
+  chosen.picture = picture_of(is_pair ? py::object(pair[0]) : value, argument);
+  const Image& image = chosen.picture.image;
+  chosen.channel = is_pair ? std::string(py::str(pair[1])) : image.channels.front().name;
+  if (!image.find(chosen.channel))
+    throw UsageError(argument, fmt::format("the image has no channel '{}'", chosen.channel),
+                     "Choose one of image.channels");
+  return chosen;
 }
 
 TipShape tip_of(py::handle value, const std::string& argument) {

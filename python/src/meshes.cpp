@@ -22,11 +22,6 @@
 namespace surf::python {
 namespace {
 
-const std::vector<std::string> all_but_units{
-    "specimen.input",      "specimen.material",    "specimen.materials",
-    "specimen.substrate",  "specimen.substrate_z", "specimen.edge",
-    "scan.height_channel", "scan.height_unit",     "scan.height_pitch"};
-
 const Argument mesh_argument{"mesh", "PathLike | Mesh", "The mesh, or its file.", true, false};
 
 Mesh given_mesh(const Call& call) {

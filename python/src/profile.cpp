@@ -12,12 +12,7 @@
 namespace surf::python {
 namespace {
 
-py::object found_of(const Measured& m) {
-  py::dict d;
-  d["value"] = m.value;
-  d["stderr"] = m.standard_error;
-  return findings(d);
-}
+py::object found_of(const Measured& m) { return measured(m.value, m.standard_error); }
 
 py::list found_of(const std::vector<Measured>& all) {
   py::list list;

@@ -34,9 +34,7 @@ py::object sample(const Call& call) {
   d["truth"] = (job.folder / "truth.gsf").string();
   d["transform"] = matrix_of(s.sem_to_afm);
   d["seconds"] = s.seconds;
-  py::list written;
-  for (const auto& file : s.written) written.append(file.string());
-  d["written"] = written;
+  d["written"] = list_of(s.written);
   return findings(d);
 }
 

@@ -16,13 +16,6 @@
 namespace surf::python {
 namespace {
 
-py::object measured(double value, double standard_error) {
-  py::dict d;
-  d["value"] = value;
-  d["stderr"] = standard_error;
-  return findings(d);
-}
-
 py::list tracks_of(const std::vector<Track>& tracks) {
   py::list all;
   for (const Track& track : tracks) {

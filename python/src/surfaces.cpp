@@ -15,35 +15,11 @@
 namespace surf::python {
 namespace {
 
-const std::vector<std::string> all_but_units{
-    "specimen.input",      "specimen.material",    "specimen.materials",
-    "specimen.substrate",  "specimen.substrate_z", "specimen.edge",
-    "scan.height_channel", "scan.height_unit",     "scan.height_pitch"};
-
-struct MapOn {
-  Picture picture;
-  std::string channel;
-};
-
-/// An image, or (image, channel).
-MapOn map_of(const py::object& given, const char* argument) {
-  const bool is_pair = PyTuple_Check(given.ptr()) && py::len(given) == 2;
-  const auto pair = is_pair ? given.cast<py::tuple>() : py::tuple();
-  const py::object image = is_pair ? py::object(pair[0]) : given;
-  MapOn map;
-  map.picture = picture_of(image, argument);
-  map.channel = is_pair ? std::string(py::str(pair[1])) : map.picture.image.channels.front().name;
-  if (!map.picture.image.find(map.channel))
-    throw UsageError(argument, fmt::format("the image has no channel '{}'", map.channel),
-                     "Choose one of image.channels");
-  return map;
-}
-
 VertexScalar scalar_of(const std::string& name, const py::object& given, const TriangleMesh& mesh) {
   VertexScalar scalar{scalar_name(name), "1", {}};
   const bool is_map = py::isinstance<Picture>(given) || PyTuple_Check(given.ptr());
   if (is_map) {
-    const MapOn map = map_of(given, "scalars");
+    const ChosenChannel map = channel_of(given, "scalars");
     const workflow::ImageSampler sampler(map.picture.image, map.channel);
     for (const Vec3& v : mesh.vertices_nm) scalar.values.push_back(sampler.at(v.x, v.y));
     scalar.unit = map.picture.image.find(map.channel)->unit;
@@ -123,7 +99,7 @@ py::object write_mesh(const Call& call) {
             scalar_of(py::str(name), py::reinterpret_borrow<py::object>(values), surface.mesh));
     }
     if (call.has("drape")) {
-      const MapOn map = map_of(call["drape"], "drape");
+      const ChosenChannel map = channel_of(call["drape"], "drape");
       surface.drape = io::make_drape(map.picture.image, map.channel);
     }
     scene.surfaces.push_back(std::move(surface));

@@ -66,31 +66,6 @@ void add(const Shown& shown, const io::HeightReadOptions& reading, workflow::Vie
   }
 }
 
-/// A picture and its channel, as it is or as (image, "SE").
-struct ShownChannel {
-  Picture picture;
-  std::string channel;
-};
-
-ShownChannel channel_of(const py::object& given, const char* argument) {
-  ShownChannel out;
-  py::object image = given;
-  if (PyTuple_Check(given.ptr()) && py::len(given) == 2) {
-    const auto pair = py::reinterpret_borrow<py::tuple>(given);
-    image = pair[0];
-    out.channel = py::str(pair[1]);
-  }
-  if (!py::isinstance<Picture>(image))
-    throw UsageError(argument, "it is no image",
-                     "Give a semsurf.Image, (image, channel), or a file as 'FILE:CHANNEL'");
-  out.picture = picture_of(image, argument);
-  if (out.channel.empty()) out.channel = out.picture.image.channels.front().name;
-  if (!out.picture.image.find(out.channel))
-    throw UsageError(argument, fmt::format("the image has no channel '{}'", out.channel),
-                     "Choose one of image.channels");
-  return out;
-}
-
 struct Inputs {
   std::vector<std::filesystem::path> files;
 
@@ -126,7 +101,7 @@ py::object view(const Call& call) {
       page.add_scalar(inputs.file(scalar.what));
       continue;
     }
-    const ShownChannel map = channel_of(scalar.what, "scalar");
+    const ChosenChannel map = channel_of(scalar.what, "scalar");
     page.add_scalar(map.picture.image, map.channel, named(scalar, "scalar"));
   }
   if (const py::object drape = call["drape"]; is_path(drape)) {
@@ -136,7 +111,7 @@ py::object view(const Call& call) {
     const py::object image = is_pair ? drape.cast<py::tuple>()[0].cast<py::object>() : drape;
     const auto item = std::ranges::find_if(
         items, [&](const Shown& shown) { return shown.what.is(image); });  // shown once
-    ShownChannel map = channel_of(drape, "drape");
+    ChosenChannel map = channel_of(drape, "drape");
     page.drape(std::move(map.picture.image), map.channel,
                item == items.end() ? "drape" : named(*item, "image"));
   }
