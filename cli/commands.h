@@ -34,6 +34,7 @@ void add_materials(CLI::App& app, Action& action);
 void add_library(CLI::App& app, Action& action);
 void add_profile(CLI::App& app, Action& action);
 void add_register(CLI::App& app, Action& action);
+void add_refine(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action, const std::string& command_line);
 void add_reconstruct(CLI::App& app, Action& action, const std::string& command_line);
 void add_tip(CLI::App& app, Action& action);

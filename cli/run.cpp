@@ -224,7 +224,8 @@ void add_commands(CLI::App& app, Action& action, const std::string& command_line
   group("SEM", add_simulate, add_sweep, add_train, add_predict, add_estimate, add_profile);
   group("AFM", add_level, add_clean, add_noise, add_tip, add_erode, add_dilate, add_open, add_close,
         add_certainty, add_survey);
-  group("AFM + SEM", add_sample, add_register, add_calibrate, add_reconstruct, add_compare);
+  group("AFM + SEM", add_sample, add_register, add_calibrate, add_reconstruct, add_refine,
+        add_compare);
   group("Surfaces and files", add_info, add_view, add_mesh, add_materials);
   group("Set-up and study", add_library, add_chart, add_completion);
   group("", add_former_join);

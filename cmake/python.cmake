@@ -1,4 +1,3 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
 # `import semsurf` (python/): built where Python's headers and pybind11 are.
 option(SEMSURF_PYTHON "The Python package, where Python's headers and pybind11 are" ON)
 set(SEMSURF_PYTHON_SITE "" CACHE STRING

@@ -123,6 +123,7 @@ void add_sweep(py::module_& module);
 void add_chart(py::module_& module);
 void add_view(py::module_& module);
 void add_compare(py::module_& module);
+void add_refine(py::module_& module);
 void add_surfaces(py::module_& module);
 
 }  // namespace surf::python

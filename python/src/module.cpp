@@ -33,6 +33,7 @@ PYBIND11_MODULE(_semsurf, module) {
   add_chart(module);
   add_view(module);
   add_compare(module);
+  add_refine(module);
   add_surfaces(module);
   module.attr("__version__") = surf::workflow::version();
   module.def("described_functions", &described_functions);

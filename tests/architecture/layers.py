@@ -18,7 +18,7 @@ MC = {f"mc/{room}" for room in ROOMS} | {"mc"}
 # The rooms of libsurf's models of SEM images, likewise.
 SEM_ROOMS = ["model", "minimise", "facet", "network", "baselines", "noise", "calibration", "guided", "training"]
 SEM = {f"sem/{room}" for room in SEM_ROOMS} | {"sem"}
-SURF = {"core", "mesh", "afm", "registration", "compare", "profile", "reconstruction"} | SEM
+SURF = {"core", "mesh", "afm", "registration", "compare", "profile", "refinement", "reconstruction"} | SEM
 
 
 def rooms_of_mc():
@@ -36,7 +36,7 @@ def parts_of_libsurf():
              for i, room in enumerate(SEM_ROOMS)}
     return {"core": (places("core"), set()), "mesh": (places("mesh"), {"core"}), "afm": (places("afm"), {"core"}),
             "registration": (places("registration"), {"core"}), "compare": (places("compare"), {"core", "registration"}),
-            "profile": (places("profile"), {"core", "mesh"}), **rooms,
+            "profile": (places("profile"), {"core", "mesh"}), "refinement": (places("refinement"), {"core", "mesh"}), **rooms,
             "sem": (places("sem"), {"core", "mesh", "afm"} | SEM),
             "reconstruction": (places("reconstruction"), {"core", "afm"} | SEM)}
 
@@ -59,7 +59,8 @@ PARTS = {
 OWNERS = [("surf/io/sim/", "io_sim"), ("surf/io/model/", "io_models"), ("surf/io/", "io"),
           *((f"surf/mc/{room}/", f"mc/{room}") for room in ROOMS), ("surf/mc/tables/", "mc_tables"), ("surf/mc/", "mc"),
           ("surf/workflow/", "workflow"),
-          *((f"surf/{part}/", part) for part in ["core", "mesh", "afm", "sem", "registration", "compare", "profile", "reconstruction"])]
+          *((f"surf/{part}/", part) for part in ["core", "mesh", "afm", "sem", "registration", "compare", "profile", "refinement",
+                                                 "reconstruction"])]
 # Third-party headers <...> and the files that may include them. First match; public headers never.
 THIRD_PARTY = [
     ("embree*/*", ["mc_sim/src/geometry/embree_scene.cpp"]),
@@ -69,7 +70,7 @@ THIRD_PARTY = [
                  "libsurf/src/reconstruction/tilt_by_sem.cpp", "libsurf/src/registration/correlation.cpp", "libsurf/src/registration/landmarks.cpp",
                  "libsurf/src/registration/uncertainty.cpp", "libsurf/src/sem/calibration/calibration.cpp",
                  "libsurf/src/sem/facet/fit_filter_bank.cpp", "libsurf/src/sem/noise/flat_samples.cpp",
-                 "libsurf/src/profile/fit_profile.cpp", "libsurf/src/profile/sight_of_walls.*", "libsurf/src/reconstruction/damped_steps.h", "libsurf/src/profile/profile_library.cpp", "libsurf/src/sem/model/film_model.cpp", "libsurf/src/sem/network/network_trainer.cpp"]),
+                 "libsurf/src/profile/fit_profile.cpp", "libsurf/src/profile/sight_of_walls.*", "libsurf/src/reconstruction/damped_steps.h", "libsurf/src/profile/profile_library.cpp", "libsurf/src/refinement/fit_modes.cpp", "libsurf/src/sem/model/film_model.cpp", "libsurf/src/sem/network/network_trainer.cpp"]),
     # In correlation.cpp only what needs no library.
     ("ceres/*", ["libsurf/src/sem/minimise/ceres_module.cpp", "libsurf/src/registration/correlation.cpp"]),
     ("cholmod.h", ["libsurf/src/reconstruction/cholmod_module.cpp"]),

@@ -26,6 +26,7 @@ set(libraries_of_mesh OpenMesh)
 set(libraries_of_registration fftw3f nlopt)
 set(libraries_of_compare fftw3f nlopt)
 set(libraries_of_profile OpenMesh nlopt)
+set(libraries_of_refinement OpenMesh)
 set(libraries_of_sem OpenMesh ceres cholmod openblas)   # which Ceres itself brings
 set(libraries_of_reconstruction OpenMesh ceres cholmod nlopt openblas)
 foreach(component IN LISTS COMPONENTS)

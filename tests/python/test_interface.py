@@ -30,6 +30,7 @@ COMMANDS = {"simulate": ["simulate"], "level": ["level"], "clean": ["clean"], "t
             "dilate": ["dilate"], "open": ["open"], "close": ["close"], "certainty": ["certainty"],
             "noise": ["noise", "scan"], "predict": ["predict"], "estimate": ["estimate"], "train": ["train"],
             "register": ["register"], "reconstruct": ["reconstruct"], "profile": ["profile"], "compare": ["compare"],
+            "refine": ["refine"],
             "survey": ["survey"], "sample": ["sample"], "sweep": ["sweep"], "chart": ["chart"], "view": ["view"],
             "noise_counts": ["noise", "counts"], "build_libraries": ["library", "build"]}
 

@@ -1,0 +1,386 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/refinement/fit_modes.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "surf/core/error.h"
+#include "surf/mesh/vertex_normals.h"
+
+namespace surf {
+namespace {
+
+/// The numbers of a view's state, in the order of the unknowns behind the amplitudes.
+enum StateNumber { gain, offset, shift_x, shift_y, tilt_x, tilt_y, state_numbers };
+
+void check(const RefinedView& v, std::size_t modes) {
+  const std::size_t n = v.measured.size();
+  bool right = n > 0 && v.simulated.size() == n && v.variance.size() == n &&
+               (v.used.empty() || v.used.size() == n) && v.effects.size() == modes;
+  for (const ModeEffect& e : v.effects)
+    right = right && e.first.size() == e.pixels.size() && e.second.size() == e.pixels.size();
+  if (!right)
+    throw InvalidInput("view", "its grids and effects do not match", "Give one effect per mode");
+}
+
+/// Weights of pixels: one over the variance; 0 for those that do not count.
+std::vector<double> weights_of(const RefinedView& v) {
+  std::vector<double> weights(v.measured.size(), 0);
+  for (std::size_t p = 0; p < weights.size(); ++p)
+    if (v.used.includes(p)) weights[p] = 1 / v.variance.data()[p];
+  return weights;
+}
+
+/// A column of the Jacobian: pixels and values.
+struct Column {
+  std::vector<std::uint32_t> pixels;
+  std::vector<double> values;
+};
+
+/// Whether two simulations of an effect have more in common than chance makes.
+bool is_sure(const ModeEffect& e, const std::vector<double>& weights) {
+  constexpr double sure = 3;  // standard deviations
+  double common = 0, squares = 0;
+  for (std::size_t i = 0; i < e.pixels.size(); ++i) {
+    const double product = weights[e.pixels[i]] * e.first[i] * e.second[i];
+    common += product, squares += product * product;
+  }
+  return common > sure * std::sqrt(squares);
+}
+
+Column column_of(const std::vector<std::uint32_t>& pixels, std::vector<double> values,
+                 double factor) {
+  for (double& v : values) v *= factor;
+  return {pixels, std::move(values)};
+}
+
+Column all_pixels(const Grid<double>& values, double factor) {
+  Column out;
+  for (std::size_t p = 0; p < values.size(); ++p) {
+    out.pixels.push_back(static_cast<std::uint32_t>(p));
+    out.values.push_back(factor * values.data()[p]);
+  }
+  return out;
+}
+
+/// The slope of an image along x or y per nm, averaged over three rows or columns.
+Grid<double> slope(const RefinedView& v, bool along_x) {
+  const Grid<double>& s = v.simulated;
+  const int w = s.width(), h = s.height();
+  Grid<double> out(w, h);
+  const double pitch = along_x ? v.placement.pitch_x_nm : v.placement.pitch_y_nm;
+  const auto at = [&](int x, int y) { return s(std::clamp(x, 0, w - 1), std::clamp(y, 0, h - 1)); };
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x) {
+      double sum = 0;
+      for (int k = -1; k <= 1; ++k) {
+        const double weight = k == 0 ? 0.5 : 0.25;
+        sum += weight * (along_x ? at(x + 1, y + k) - at(x - 1, y + k)
+                                 : at(x + k, y + 1) - at(x + k, y - 1));
+      }
+      out(x, y) = sum / (2 * pitch);
+    }
+  return out;
+}
+
+/// Columns in all pixels, so that products are fast.
+Eigen::MatrixXd dense(const std::vector<Column>& columns, std::size_t pixels) {
+  Eigen::MatrixXd j = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(pixels),
+                                            static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    for (std::size_t i = 0; i < columns[k].pixels.size(); ++i)
+      j(static_cast<Eigen::Index>(columns[k].pixels[i]), static_cast<Eigen::Index>(k)) =
+          columns[k].values[i];
+  return j;
+}
+
+/// Bumps over wide parts of an image: triangular along x and y, so that they add up to 1.
+class WideBumps {
+ public:
+  explicit WideBumps(const RefinedView& v)
+      : view_(v), across_(count(v.measured.width() * v.placement.pitch_x_nm)),
+        along_(count(v.measured.height() * v.placement.pitch_y_nm)) {}
+
+  std::size_t size() const { return static_cast<std::size_t>(across_ * along_); }
+
+  /// Calls visit(bump, share) for the bumps at a pixel.
+  template <class Visit>
+  void at(std::size_t pixel, const Visit& visit) const {
+    if (size() == 0) return;
+    const auto w = static_cast<std::size_t>(view_.measured.width());
+    const Share x = share(static_cast<double>(pixel % w), view_.measured.width(), across_),
+                y = share(static_cast<double>(pixel / w), view_.measured.height(), along_);
+    for (int j = 0; j < 2; ++j)
+      for (int i = 0; i < 2; ++i)
+        if (const double size = (i ? x.next : 1 - x.next) * (j ? y.next : 1 - y.next); size > 0)
+          visit(static_cast<std::size_t>((y.first + j) * across_ + x.first + i), size);
+  }
+
+  std::vector<Column> columns() const {
+    std::vector<Column> out(size());
+    for (std::uint32_t p = 0; p < view_.measured.size(); ++p)
+      at(p, [&](std::size_t bump, double share) {
+        out[bump].pixels.push_back(p), out[bump].values.push_back(share);
+      });
+    return out;
+  }
+
+ private:
+  struct Share {
+    int first;
+    double next;
+  };
+  int count(double size_nm) const {
+    return view_.wide_error > 0 ? 1 + static_cast<int>(std::ceil(size_nm / view_.wide_nm)) : 0;
+  }
+  static Share share(double pixel, int pixels, int bumps) {
+    if (bumps < 2) return {0, 0};
+    const double at = (pixel + 0.5) / pixels * (bumps - 1);
+    const int first = std::min(static_cast<int>(at), bumps - 2);
+    return {first, at - first};
+  }
+
+  const RefinedView& view_;
+  int across_, along_;
+};
+
+Eigen::Map<const Eigen::MatrixXd> square(const std::vector<double>& values, std::size_t n) {
+  return {values.data(), static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n)};
+}
+
+Eigen::Index numbers_of(const std::vector<RefinedView>& views) {
+  Eigen::Index sum = 0;
+  for (const RefinedView& v : views)
+    sum += state_numbers + static_cast<Eigen::Index>(WideBumps(v).size());
+  return sum;
+}
+
+/// What an image tells of the amplitudes, and behind them of the numbers of its state: products of
+/// effects. In `told` no chance is multiplied by itself, which would look like information: each
+/// product is of two simulations. `seen` are products of their means, with the chance in them.
+struct ViewEquations {
+  Eigen::MatrixXd told, seen;
+  Eigen::VectorXd pull;
+};
+
+/// Adds a view's products to those of all unknowns; its own numbers begin at `at`.
+void add_view(const Eigen::MatrixXd& own, Eigen::Index modes, Eigen::Index at,
+              Eigen::MatrixXd& all) {
+  const Eigen::Index others = own.rows() - modes;
+  all.topLeftCorner(modes, modes) += own.topLeftCorner(modes, modes);
+  all.block(at, 0, others, modes) = own.bottomLeftCorner(others, modes);
+  all.block(0, at, modes, others) = own.topRightCorner(modes, others);
+  all.block(at, at, others, others) = own.bottomRightCorner(others, others);
+}
+
+ViewEquations equations_of(const RefinedView& view, const RefinedViewState& state) {
+  const std::size_t pixels = view.measured.size();
+  const std::vector<double> weights = weights_of(view);
+  std::vector<Column> first, second;
+  const auto add_effect = [&](const ModeEffect& e) {
+    const bool tells = is_sure(e, weights);
+    first.push_back(tells ? column_of(e.pixels, e.first, state.gain) : Column{});
+    second.push_back(tells ? column_of(e.pixels, e.second, state.gain) : Column{});
+  };
+  const auto add = [&](Column column) {
+    first.push_back(column), second.push_back(std::move(column));
+  };
+  for (const ModeEffect& e : view.effects) add_effect(e);
+  add(all_pixels(view.simulated, 1));
+  add(all_pixels(Grid<double>(view.measured.width(), view.measured.height(), 1), 1));
+  add(all_pixels(slope(view, true), state.gain));
+  add(all_pixels(slope(view, false), state.gain));
+  add_effect(view.tilt_x), add_effect(view.tilt_y);
+  for (Column& wide : WideBumps(view).columns()) add(std::move(wide));
+  const Eigen::MatrixXd a = dense(first, pixels), b = dense(second, pixels);
+  const Eigen::Map<const Eigen::VectorXd> w(weights.data(), static_cast<Eigen::Index>(pixels));
+  const Grid<double> wide = wide_error(view, state);
+  Eigen::VectorXd left(static_cast<Eigen::Index>(pixels));
+  for (std::size_t p = 0; p < pixels; ++p)
+    left[static_cast<Eigen::Index>(p)] = view.measured.data()[p] - state.offset -
+                                         state.gain * view.simulated.data()[p] - wide.data()[p];
+  const Eigen::MatrixXd product = a.transpose() * w.asDiagonal() * b, mean = 0.5 * (a + b);
+  return {0.5 * (product + product.transpose()), mean.transpose() * w.asDiagonal() * mean,
+          mean.transpose() * (w.asDiagonal() * left)};
+}
+
+/// What is known of the numbers of a view's state, which begin at `at`. Gain and offset are free.
+void set_prior(const RefinedView& view, const RefinedViewState& s, Eigen::Index at,
+               Eigen::MatrixXd& root, Eigen::VectorXd& center) {
+  const auto set = [&](Eigen::Index number, double off, double deviation) {
+    root(at + number, at + number) = deviation;
+    center[at + number] = deviation > 0 ? -off / deviation : 0;
+  };
+  double most = 0;
+  for (const double v : view.simulated.data()) most = std::max(most, std::abs(v));
+  constexpr double free = 10;
+  set(gain, 0, free * std::abs(s.gain));
+  set(offset, 0, free * std::abs(s.gain) * most);
+  set(shift_x, s.shift_x_nm - view.shift_x_nm, view.shift_error_nm);
+  set(shift_y, s.shift_y_nm - view.shift_y_nm, view.shift_error_nm);
+  set(tilt_x, s.tilt_x_deg, view.tilt_error_deg);
+  set(tilt_y, s.tilt_y_deg, view.tilt_error_deg);
+  const auto bumps = static_cast<Eigen::Index>(WideBumps(view).size());
+  for (Eigen::Index k = 0; k < bumps; ++k)
+    set(state_numbers + k, s.wide.empty() ? 0 : s.wide[static_cast<std::size_t>(k)],
+        view.wide_error);
+}
+
+RefinedViewState moved_by(RefinedViewState s, const Eigen::VectorXd& by) {
+  s.gain += by[gain], s.offset += by[offset];
+  s.shift_x_nm += by[shift_x], s.shift_y_nm += by[shift_y];
+  s.tilt_x_deg += by[tilt_x], s.tilt_y_deg += by[tilt_y];
+  s.wide.resize(static_cast<std::size_t>(by.size() - state_numbers), 0);
+  for (std::size_t k = 0; k < s.wide.size(); ++k)
+    s.wide[k] += by[state_numbers + static_cast<Eigen::Index>(k)];
+  return s;
+}
+
+}  // namespace
+
+Grid<double> wide_error(const RefinedView& view, const RefinedViewState& state) {
+  Grid<double> out(view.measured.width(), view.measured.height(), 0);
+  if (state.wide.empty()) return out;
+  const WideBumps bumps(view);
+  for (std::size_t p = 0; p < out.size(); ++p)
+    bumps.at(p, [&](std::size_t bump, double share) { out.data()[p] += share * state.wide[bump]; });
+  return out;
+}
+
+void fit_gain(const RefinedView& view, RefinedViewState& state) {
+  const std::vector<double> weights = weights_of(view);
+  const Grid<double> wide = wide_error(view, state);
+  double sum = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (std::size_t p = 0; p < weights.size(); ++p) {
+    const double w = weights[p], s = view.simulated.data()[p],
+                 m = view.measured.data()[p] - wide.data()[p];
+    sum += w, x += w * s, y += w * m, xx += w * s * s, xy += w * s * m;
+  }
+  const double determinant = sum * xx - x * x;
+  if (!(determinant > 0))
+    throw InvalidInput("image", "the simulated image shows nothing", "Check where the image looks");
+  state.gain = (sum * xy - x * y) / determinant;
+  state.offset = (y - state.gain * x) / sum;
+}
+
+ModeFit fit_modes(const std::vector<RefinedView>& views,
+                  const std::vector<RefinedViewState>& states,
+                  const std::vector<double>& amplitudes, const std::vector<double>& prior) {
+  const std::size_t modes = amplitudes.size();
+  if (prior.size() != modes * modes || states.size() != views.size())
+    throw InvalidInput("modes", "their prior or the states of views do not match",
+                       "Give one state per view");
+  const auto size = static_cast<Eigen::Index>(modes), all = size + numbers_of(views);
+  // All unknowns are those of the prior, a standard normal one, times this matrix.
+  Eigen::MatrixXd root = Eigen::MatrixXd::Zero(all, all);
+  Eigen::VectorXd center = Eigen::VectorXd::Zero(all);  // of the prior, in standard deviations
+  root.topLeftCorner(size, size) = square(prior, modes).llt().matrixL();
+  center.head(size) =
+      root.topLeftCorner(size, size)
+          .triangularView<Eigen::Lower>()
+          .solve(-Eigen::Map<const Eigen::VectorXd>(amplitudes.data(), size));
+  Eigen::MatrixXd told = Eigen::MatrixXd::Zero(all, all), seen = told;
+  Eigen::VectorXd pull = Eigen::VectorXd::Zero(all);
+  ModeFit out;
+  Eigen::Index at = size;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    check(views[v], modes);
+    const ViewEquations own = equations_of(views[v], states[v]);
+    const Eigen::Index others = own.told.rows() - size;
+    add_view(own.told, size, at, told);
+    add_view(own.seen, size, at, seen);
+    pull.head(size) += own.pull.head(size);
+    pull.segment(at, others) = own.pull.tail(others);
+    set_prior(views[v], states[v], at, root, center);
+    at += others;
+    out.information.emplace_back();
+    for (Eigen::Index k = 0; k < size; ++k)
+      out.information.back().push_back(std::max(0.0, own.told(k, k)));
+  }
+  // Directions of their own. What chance is among the effects of each makes it tell less, as more
+  // noise of the image would.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(root.transpose() * told * root);
+  const Eigen::MatrixXd spread = root * parts.eigenvectors();
+  const Eigen::VectorXd with_chance = (spread.transpose() * seen * spread).diagonal();
+  Eigen::VectorXd to_be_told = spread.transpose() * pull, variances(all);
+  for (Eigen::Index k = 0; k < all; ++k) {
+    const double real = std::max(0.0, parts.eigenvalues()[k]),
+                 share = real > 0 ? std::min(1.0, real / with_chance[k]) : 0;
+    variances[k] = 1 / (1 + share * real);
+    to_be_told[k] *= share;
+  }
+  const Eigen::VectorXd change =
+      spread * variances.asDiagonal() * (to_be_told + parts.eigenvectors().transpose() * center);
+  const Eigen::MatrixXd covariance =
+      spread.topRows(size) * variances.asDiagonal() * spread.topRows(size).transpose();
+  out.amplitudes_nm = amplitudes;
+  for (std::size_t k = 0; k < modes; ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    const double by = change[i];
+    out.amplitudes_nm[k] += by;
+    out.step = std::max(out.step, std::abs(by) / std::sqrt(prior[k * modes + k]));
+    out.move = std::max(out.move, std::abs(by) / std::sqrt(covariance(i, i)));
+  }
+  out.covariance.assign(covariance.data(), covariance.data() + covariance.size());
+  at = size;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const auto others = state_numbers + static_cast<Eigen::Index>(WideBumps(views[v]).size());
+    out.views.push_back(moved_by(states[v], change.segment(at, others)));
+    at += others;
+  }
+  return out;
+}
+
+double misfit(const std::vector<RefinedView>& views, const std::vector<RefinedViewState>& states,
+              const std::vector<double>& amplitudes, const std::vector<double>& prior) {
+  const auto size = static_cast<Eigen::Index>(amplitudes.size());
+  const Eigen::Map<const Eigen::VectorXd> now(amplitudes.data(), size);
+  double sum = now.dot(square(prior, amplitudes.size()).llt().solve(now));
+  const auto off_by = [&](double value, double deviation) {
+    if (deviation > 0) sum += value * value / (deviation * deviation);
+  };
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const RefinedView& view = views[v];
+    const RefinedViewState& s = states[v];
+    const std::vector<double> weights = weights_of(view);
+    const Grid<double> wide = wide_error(view, s);
+    for (std::size_t p = 0; p < weights.size(); ++p) {
+      const double off = view.measured.data()[p] - s.offset - s.gain * view.simulated.data()[p] -
+                         wide.data()[p];
+      sum += weights[p] * off * off;
+    }
+    off_by(s.shift_x_nm - view.shift_x_nm, view.shift_error_nm);
+    off_by(s.shift_y_nm - view.shift_y_nm, view.shift_error_nm);
+    off_by(s.tilt_x_deg, view.tilt_error_deg);
+    off_by(s.tilt_y_deg, view.tilt_error_deg);
+    for (const double w : s.wide) off_by(w, view.wide_error);
+  }
+  return sum;
+}
+
+std::vector<double> vertex_deviations(const TriangleMesh& mesh, const std::vector<MeshMode>& modes,
+                                      const std::vector<double>& covariance) {
+  const std::vector<Vec3> normals = vertex_normals(mesh);
+  struct Share {
+    std::size_t mode;
+    double size;
+  };
+  std::vector<std::vector<Share>> shares(mesh.vertices_nm.size());
+  for (std::size_t k = 0; k < modes.size(); ++k)
+    for (const MeshMode::Move& move : modes[k].moves)
+      shares[move.vertex].push_back({k, dot(move.by, normals[move.vertex])});
+  std::vector<double> out;
+  for (const std::vector<Share>& at : shares) {
+    double variance = 0;
+    for (const Share& a : at)
+      for (const Share& b : at)
+        variance += a.size * b.size * covariance[a.mode * modes.size() + b.mode];
+    out.push_back(std::sqrt(std::max(0.0, variance)));
+  }
+  return out;
+}
+
+}  // namespace surf

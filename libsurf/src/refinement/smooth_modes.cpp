@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "surf/refinement/mesh_modes.h"
+
+namespace surf {
+namespace {
+
+constexpr int degree = 2;
+
+/// Legendre's polynomials up to the second degree, scaled to a largest magnitude of 1 on [-1, 1].
+std::array<double, degree + 1> polynomials(double t) { return {1, t, 0.5 * (3 * t * t - 1)}; }
+
+/// The place within the box, each coordinate from -1 to 1.
+Vec3 place_in(const Box& box, const Vec3& p) {
+  const Vec3 middle = box.center_nm(), size = box.size_nm();
+  const auto one = [](double v, double m, double s) {
+    return s > 0 ? std::clamp(2 * (v - m) / s, -1.0, 1.0) : 0.0;
+  };
+  return {one(p.x, middle.x, size.x), one(p.y, middle.y, size.y), one(p.z, middle.z, size.z)};
+}
+
+/// 1 within the box seen from above, and falling to 0 where a place is `fade_nm` beside it.
+double share(const Box& box, const Vec3& p, double fade_nm) {
+  const double x = std::max({box.lower_nm.x - p.x, p.x - box.upper_nm.x, 0.0}),
+               y = std::max({box.lower_nm.y - p.y, p.y - box.upper_nm.y, 0.0}),
+               t = std::hypot(x, y) / fade_nm;
+  return t >= 1 ? 0 : (1 - t * t) * (1 - t * t);
+}
+
+/// Whether a polynomial of degrees a, b, c along x, y, z changes a size along a direction, or leans
+/// or tapers walls along it.
+bool is_of_walls(const Vec3& direction, int a, int b, int c) {
+  const int along = direction.x > 0 ? a : direction.y > 0 ? b : c, all = a + b + c;
+  const bool taper = direction.z == 0 && all == 2 && along == 1 && c == 1;
+  return taper || (all == 1 && (along == 1 || c == 1));
+}
+
+}  // namespace
+
+std::vector<MeshMode> smooth_modes(const TriangleMesh& mesh, const Box& box, double fade_nm,
+                                   SmoothKind kind) {
+  std::vector<MeshMode> modes;
+  constexpr std::array<Vec3, 3> directions{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+  for (const Vec3& direction : directions)
+    for (int a = 0; a <= degree; ++a)
+      for (int b = 0; a + b <= degree; ++b)
+        for (int c = 0; a + b + c <= degree; ++c) {
+          if (a + b + c == 0) continue;  // images do not tell where the whole is
+          if (kind == SmoothKind::walls && !is_of_walls(direction, a, b, c)) continue;
+          MeshMode mode;
+          mode.vertical = direction.z > 0;
+          for (std::size_t v = 0; v < mesh.vertices_nm.size(); ++v) {
+            const Vec3 t = place_in(box, mesh.vertices_nm[v]);
+            const double size = polynomials(t.x)[static_cast<std::size_t>(a)] *
+                                polynomials(t.y)[static_cast<std::size_t>(b)] *
+                                polynomials(t.z)[static_cast<std::size_t>(c)] *
+                                share(box, mesh.vertices_nm[v], fade_nm);
+            if (size != 0) mode.moves.push_back({static_cast<std::uint32_t>(v), direction * size});
+          }
+          modes.push_back(std::move(mode));
+        }
+  return modes;
+}
+
+}  // namespace surf

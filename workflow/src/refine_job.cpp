@@ -1,0 +1,513 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surf/workflow/refine_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "chain_steps.h"
+#include "job_libraries.h"
+#include "refine_images.h"
+#include "refine_output.h"
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/io/plot.h"
+#include "surf/mesh/open_sheet.h"
+#include "surf/mesh/remesh.h"
+#include "surf/mesh/self_intersections.h"
+#include "surf/mesh/triangle_tree.h"
+#include "surf/mesh/vertex_normals.h"
+#include "surf/reconstruction/view.h"
+#include "surf/registration/find_shift.h"
+#include "surf/sem/estimate_sem_noise.h"
+#include "surf/sem/noise_of_residuals.h"
+#include "surf/workflow/signal_detectors.h"
+#include "surf/workflow/view_settings.h"
+
+namespace surf::workflow {
+namespace {
+
+constexpr double unrelated = 0.3;        // correlation of images that show different things
+constexpr double largest_step = 2;       // of an amplitude, over its prior deviation
+constexpr double settled = 0.7;          // over its deviation: nothing moves any more
+constexpr double settled_of_prior = 0.02;
+constexpr double shift_pixels = 3;       // what images' places may be off by
+constexpr double as_good = 0.03;         // correlations that differ by less
+constexpr double least_relief = 0.1;     // of the height, above or below the ground
+constexpr double correlation_nm = 4;     // of what simulations are off by
+constexpr double wide_correlations = 10; // they are off as much over wide parts
+constexpr double edges_per_spacing = 3;  // triangles between bumps
+constexpr double most_unexplained = 0.5;
+constexpr double blur_nm = 10;  // of the first round: walls may be off by as much
+constexpr double beside_nm = 40;         // what images show, the mesh is fine, too
+constexpr double sheet_heights = 3, least_sheet_nm = 80;  // how far a sheet goes on
+constexpr int few_modes = 4;  // times as many electrons for the effects of a few modes
+constexpr int halvings = 6;                               // of steps that make a mesh cut itself
+
+void check(const RefineJob& job) {
+  if (job.material.name.empty())
+    throw UsageError("`specimen.material`", "it is missing",
+                     "Say what the specimen is made of, as `specimen.material=Si`");
+  if (job.images.empty())
+    throw UsageError("`reconstruction.sem`", "no image is given",
+                     "Name the SEM images, as `reconstruction.sem=left.tif`");
+  const auto one_or_all = [&](std::size_t size, const char* subject) {
+    if (size > 1 && size != job.images.size())
+      throw UsageError(subject,
+                       fmt::format("{} values are given for {} images", size, job.images.size()),
+                       "Give one for each image in turn, or one for all");
+  };
+  one_or_all(job.tilts_deg.size(), "`beam.tilt`");
+  one_or_all(job.azimuths_deg.size(), "`beam.azimuth`");
+  one_or_all(job.signals.size(), "`reconstruction.view_signal`");
+  for (const std::string& signal : job.signals)
+    detectors_of(signal, "`reconstruction.view_signal`");
+  for (const double tilt : job.tilts_deg)
+    if (!(tilt >= 0 && tilt <= largest_view_tilt_deg))
+      throw UsageError("`beam.tilt`", fmt::format("{:g} degrees are out of range", tilt),
+                       fmt::format("Give 0 to {:g}deg; `beam.azimuth` says to which side",
+                                   largest_view_tilt_deg));
+  for (const SemInput& input : job.images) {
+    validate(input.image, input.file.filename().string().c_str());
+    const double pixels =
+        static_cast<double>(input.image.values.width()) * input.image.values.height();
+    constexpr double most_pixels = 512.0 * 512.0;
+    if (pixels > most_pixels)
+      throw InvalidInput(input.file.filename().string(),
+                         "it has more than 512 x 512 pixels: every change is simulated in it",
+                         "Cut out the feature, or take larger pixels");
+  }
+  std::error_code ignored;
+  if (std::filesystem::exists(job.folder, ignored) &&
+      !std::filesystem::is_directory(job.folder, ignored))
+    throw UsageError("`output`", fmt::format("{} is no folder", job.folder.string()),
+                     "Name a folder for all results, as `output=result`");
+  if (job.picture && !job.folder.empty()) io::check_plot_target(job.folder / "panel.png");
+}
+
+/// Noise of an image by its flat places; nothing where it has too few.
+std::optional<SemNoise> noise_of_flats(const PlacedImage& image) {
+  try {
+    return estimate_sem_noise(image).noise;
+  } catch (const InvalidInput&) {
+    return std::nullopt;
+  }
+}
+
+/// Noise by what a simulated image leaves, its own chance included.
+SemNoise noise_of_rest(const PlacedImage& image, const Grid<double>& simulated,
+                       const RefinedViewState& s) {
+  Grid<double> mean = simulated;
+  for (double& v : mean.data()) v = s.gain * v + s.offset;
+  return noise_of_residuals(image.values, mean, image.valid);
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double correlation(const RefinedView& v) {
+  double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
+  for (std::size_t p = 0; p < v.measured.size(); ++p) {
+    if (!v.used.includes(p)) continue;
+    const double x = v.measured.data()[p], y = v.simulated.data()[p];
+    ++n, a += x, b += y, aa += x * x, bb += y * y, ab += x * y;
+  }
+  const double va = aa - a * a / n, vb = bb - b * b / n;
+  return va > 0 && vb > 0 ? (ab - a * b / n) / std::sqrt(va * vb) : 0;
+}
+
+/// Rms of what gain and offset leave, less what noise makes of it, over the signal's deviation.
+double unexplained_share(const RefinedView& v, const RefinedViewState& s, const SemNoise& noise) {
+  double n = 0, left = 0, sum = 0, squares = 0, chance = 0;
+  for (std::size_t p = 0; p < v.measured.size(); ++p) {
+    if (!v.used.includes(p)) continue;
+    const double mean = s.gain * v.simulated.data()[p] + s.offset,
+                 off = v.measured.data()[p] - mean;
+    ++n, left += off * off, chance += noise.variance(mean);
+    sum += mean, squares += mean * mean;
+  }
+  const double contrast = squares / n - sum * sum / (n * n);
+  return contrast > 0 ? std::sqrt(std::max(0.0, (left - chance) / n) / contrast) : 1;
+}
+
+class Refinement {
+ public:
+  Refinement(const RefineJob& job, const Reporter& reporter)
+      : job_(job), told_(reporter),
+        kept_(job.cache, reporter.counting("cascades"), reporter.on_note),
+        libraries_(kept_, job.threads), images_(job, libraries_), states_(job.images.size()),
+        noise_(job.images.size()) {
+    for (const SemInput& input : job.images) {
+      RefinedView view;
+      view.placement = input.image.placement();
+      view.measured = input.image.values;
+      view.used = input.image.valid;
+      view.tilt_error_deg = job.tilt_error_deg;
+      flat_noise_.push_back(noise_of_flats(input.image));
+      view.shift_error_nm = shift_pixels * view.placement.pitch_x_nm;
+      views_.push_back(std::move(view));
+    }
+  }
+
+  RefineSummary run() {
+    begin(told_, "start");
+    extend_start();
+    find_places();
+    const Box box = seen_box();
+    const double pixel = smallest_pixel();
+    edge_nm_ = job_.edge_nm > 0 ? job_.edge_nm : 2 * pixel;
+    const double spacing = job_.spacing_nm > 0 ? job_.spacing_nm : edges_per_spacing * edge_nm_;
+    Box region = box;
+    region.lower_nm -= Vec3{beside_nm, beside_nm, 0};
+    region.upper_nm += Vec3{beside_nm, beside_nm, 0};
+    base_ = remesh(base_, {.edge_nm = edge_nm_, .region_nm = region, .watch = {{}, told_.cancel}});
+    summary_.before = base_;
+    const ModePrior prior{job_.start_error_nm, job_.height_error_nm, job_.bump_error_nm,
+                          job_.bump_length_nm};
+    begin(told_, "whole shape");
+    const double blur_px = blur_nm / pixel;
+    take_modes(smooth_modes(base_, relief_box(box), fade_nm(), SmoothKind::walls));
+    for (const double share : {1.0, 0.0})
+      rounds(job_.smooth_rounds, prior, 1000, share * blur_px, few_modes * job_.effect_electrons);
+    // The result so far is what bumps stand on.
+    if (job_.bump_rounds > 0) {
+      begin(told_, "bumps");
+      base_ = moved(base_, modes_, amplitudes_);
+      std::vector<MeshMode> all = smooth_modes(base_, relief_box(seen_box()), fade_nm());
+      std::vector<MeshMode> bumps = bump_modes(base_, in_view(), spacing);
+      all.insert(all.end(), bumps.begin(), bumps.end());
+      take_modes(std::move(all));
+      rounds(job_.bump_rounds, prior, 100'000, 0, job_.effect_electrons);
+    }
+    finish();
+    return std::move(summary_);
+  }
+
+ private:
+  double smallest_pixel() const {
+    double out = HUGE_VAL;
+    for (const RefinedView& v : views_) out = std::min(out, v.placement.pitch_x_nm);
+    return out;
+  }
+
+  /// Over how far beside the relief what smooth modes do fades away: a sheet's rim stays.
+  double fade_nm() const { return sheet_heights * bounds(base_).size_nm().z + least_sheet_nm; }
+
+  /// A sheet goes on beside what images show.
+  void extend_start() {
+    base_ = job_.start;
+    std::string reason;
+    if (std::optional<TriangleMesh> wide = extend_open_sheet(base_, fade_nm(), reason))
+      base_ = std::move(*wide);
+  }
+
+  void render(const TriangleMesh& mesh, std::size_t v, std::uint64_t seed) {
+    RefineImage image =
+        images_.render(mesh, v, states_[v], job_.electrons, seed, job_.threads, {{}, told_.cancel});
+    views_[v].simulated = std::move(image.mean);
+    views_[v].variance = std::move(image.variance);
+    summary_.primaries += job_.electrons * static_cast<std::int64_t>(views_[v].simulated.size());
+  }
+
+  /// Gains and offsets; what pixels may be off by: noise, the simulation's chance, and what
+  /// simulations are off by, which is alike in neighbours, so that each tells less.
+  void weigh(std::size_t v) {
+    RefinedView& view = views_[v];
+    const Grid<double> chance = view.variance;
+    std::ranges::fill(view.variance.data(), 1.0);
+    fit_gain(view, states_[v]);
+    const RefinedViewState& s = states_[v];
+    noise_[v] = flat_noise_[v] ? *flat_noise_[v]
+                               : noise_of_rest(job_.images[v].image, view.simulated, s);
+    std::vector<double> levels;
+    for (const double y : view.simulated.data()) levels.push_back(s.gain * y + s.offset);
+    const double middle = median(levels);
+    const double alike = std::max(1.0, 2 * M_PI * correlation_nm * correlation_nm /
+                                           (view.placement.pitch_x_nm * view.placement.pitch_y_nm));
+    for (std::size_t p = 0; p < levels.size(); ++p) {
+      const double off = job_.model_error * (levels[p] - middle);
+      view.variance.data()[p] =
+          noise_[v].variance(levels[p]) + off * off * alike +
+          (flat_noise_[v] ? s.gain * s.gain * chance.data()[p] : 0);
+    }
+    double squares = 0;
+    for (const double level : levels) squares += (level - middle) * (level - middle);
+    view.wide_error =
+        job_.model_error * std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, levels.size())));
+    view.wide_nm = wide_correlations * correlation_nm;
+    fit_gain(view, states_[v]);
+  }
+
+  /// Where each image looks: the best shift of it over what the start looks like.
+  void find_places() {
+    for (std::size_t v = 0; v < views_.size(); ++v) {
+      render(base_, v, job_.seed);
+      const PlacedImage simulated{views_[v].placement, views_[v].simulated, {}};
+      const std::vector<ImageShift> shifts = find_shifts(simulated, job_.images[v].image);
+      if (!shifts.empty()) {
+        const auto look_at = [&](double x_nm, double y_nm) {
+          states_[v].shift_x_nm = x_nm, states_[v].shift_y_nm = y_nm;
+          render(base_, v, job_.seed);
+          return correlation(views_[v]);
+        };
+        const ImageShift& best = shifts.front();
+        const double agreement = look_at(best.x_nm, best.y_nm);
+        // What hardly tells, as a shift along a line, is left where it was.
+        if (look_at(0, 0) < agreement - as_good && look_at(best.x_nm, 0) < agreement - as_good &&
+            look_at(0, best.y_nm) < agreement - as_good)
+          look_at(best.x_nm, best.y_nm);
+        views_[v].shift_x_nm = states_[v].shift_x_nm;
+        views_[v].shift_y_nm = states_[v].shift_y_nm;
+      }
+      if (const double agreement = correlation(views_[v]); !(agreement >= unrelated))
+        throw InvalidInput(
+            job_.images[v].file.filename().string(),
+            fmt::format("it does not show this specimen from this side: its correlation with the "
+                        "start's image is {:.2f}",
+                        agreement),
+            "Check `beam.tilt` and `beam.azimuth` of this image, its pixel size, and the start");
+      weigh(v);
+      summary_.images.push_back({});
+      summary_.images[v].unexplained_before = unexplained_share(views_[v], states_[v], noise_[v]);
+    }
+  }
+
+  /// The box of what images see.
+  Box seen_box() const {
+    const TriangleMesh now = amplitudes_.empty() ? base_ : moved(base_, modes_, amplitudes_);
+    Box box;
+    for (std::size_t v = 0; v < views_.size(); ++v) {
+      const Grid<Vec3> seen = images_.seen(now, v, states_[v]);
+      for (const Vec3& p : seen.data())
+        if (std::isfinite(p.x)) box.extend(p);
+    }
+    const Box all = bounds(now);
+    box.lower_nm.z = all.lower_nm.z, box.upper_nm.z = all.upper_nm.z;
+    return box;
+  }
+
+  void take_modes(std::vector<MeshMode> modes) {
+    modes_ = std::move(modes);
+    amplitudes_.assign(modes_.size(), 0);
+  }
+
+  /// The box of what rises from the ground, or is sunk into it, within what is seen: walls are near
+  /// its sides, so that polynomials of it move them.
+  Box relief_box(const Box& seen) const {
+    std::vector<std::pair<double, double>> areas;  // height, area of level triangles
+    for (const Triangle& t : base_.triangles) {
+      const Vec3 &a = base_.vertices_nm[t[0]], &b = base_.vertices_nm[t[1]],
+                 &c = base_.vertices_nm[t[2]];
+      const Vec3 normal = cross(b - a, c - a);
+      if (normal.z > 0.9 * length(normal)) areas.push_back({(a.z + b.z + c.z) / 3, normal.z});
+    }
+    std::ranges::sort(areas);
+    double all = 0, sum = 0, ground = 0;
+    for (const auto& [z, area] : areas) all += area;
+    for (const auto& [z, area] : areas) {
+      sum += area, ground = z;
+      if (sum > 0.5 * all) break;
+    }
+    Box inside, out;
+    const auto is_seen = [&](const Vec3& p) {
+      return p.x >= seen.lower_nm.x && p.x <= seen.upper_nm.x && p.y >= seen.lower_nm.y &&
+             p.y <= seen.upper_nm.y;
+    };
+    for (const Vec3& p : base_.vertices_nm)
+      if (is_seen(p)) inside.extend(p);
+    if (inside.empty()) return seen;
+    const double least = least_relief * inside.size_nm().z;
+    for (const Vec3& p : base_.vertices_nm)
+      if (is_seen(p) && std::abs(p.z - ground) > least) out.extend(p);
+    if (out.empty()) return inside;
+    out.lower_nm.z = inside.lower_nm.z, out.upper_nm.z = inside.upper_nm.z;
+    return out;
+  }
+
+  /// Vertices that may move by themselves: those near what is seen.
+  std::vector<bool> in_view() const {
+    const Box box = seen_box();
+    std::vector<bool> out;
+    for (const Vec3& p : base_.vertices_nm)
+      out.push_back(p.x > box.lower_nm.x && p.x < box.upper_nm.x && p.y > box.lower_nm.y &&
+                    p.y < box.upper_nm.y);
+    return out;
+  }
+
+  /// Images are compared as they are, or blurred, in rounds until nothing moves any more.
+  void rounds(int count, const ModePrior& prior, std::uint64_t seed, double blur_px,
+              std::int64_t electrons) {
+    const std::vector<double> covariance = prior_covariance(modes_, prior);
+    const std::uint64_t own = job_.seed + seed;
+    look(own);
+    for (int round = 0; round < count; ++round) {
+      const Watch watch = told_.watch(double(round) / count, double(round + 1) / count);
+      images_.add_effects(base_, modes_, amplitudes_, states_, electrons, own + 1, watch, views_,
+                          summary_.primaries);
+      const std::vector<RefinedView> seen = blurred_views(blur_px);
+      const ModeFit fit = fit_modes(seen, states_, amplitudes_, covariance);
+      summary_.covariance = fit.covariance;
+      information_ = fit.information;
+      const double taken = take(fit, covariance, own, blur_px);
+      settled_ = taken * fit.move < settled || taken * fit.step < settled_of_prior;
+      if (settled_) break;
+    }
+  }
+
+  /// Renders all views of the present surface; gains and weights.
+  void look(std::uint64_t seed) {
+    const TriangleMesh now = moved(base_, modes_, amplitudes_);
+    for (std::size_t v = 0; v < views_.size(); ++v) render(now, v, seed), weigh(v);
+  }
+
+  std::vector<RefinedView> blurred_views(double sigma_px) const {
+    std::vector<RefinedView> out;
+    for (const RefinedView& view : views_) out.push_back(blurred(view, sigma_px));
+    return out;
+  }
+
+  /// Takes a step, or so much of it that the images agree better and the mesh does not cut itself;
+  /// the share that was taken.
+  double take(const ModeFit& fit, const std::vector<double>& prior, std::uint64_t seed,
+              double blur_px) {
+    const std::vector<double> before = amplitudes_;
+    const std::vector<RefinedViewState> states = states_;
+    const std::vector<RefinedView> views = views_;
+    const double misfit_before = misfit(blurred_views(blur_px), states_, amplitudes_, prior);
+    double share = std::min(1.0, largest_step / std::max(fit.step, 1e-9));
+    for (int k = 0; k <= halvings; ++k, share *= 0.5) {
+      for (std::size_t m = 0; m < before.size(); ++m)
+        amplitudes_[m] = before[m] + share * (fit.amplitudes_nm[m] - before[m]);
+      const TriangleMesh now = moved(base_, modes_, amplitudes_);
+      held_ = !find_self_intersections(now, {.limit = 1, .threads = job_.threads}).pairs.empty();
+      if (held_) continue;
+      for (std::size_t v = 0; v < views_.size(); ++v) {
+        states_[v] = part_way(states[v], fit.views[v], share);
+        const Grid<double> variance = views_[v].variance;
+        render(now, v, seed);
+        views_[v].variance = variance;  // the same weights as before
+        fit_gain(views_[v], states_[v]);
+      }
+      if (misfit(blurred_views(blur_px), states_, amplitudes_, prior) < misfit_before) {
+        look(seed);
+        return share;
+      }
+    }
+    amplitudes_ = before, states_ = states, views_ = views;
+    return 0;
+  }
+
+  static RefinedViewState part_way(RefinedViewState a, const RefinedViewState& b, double share) {
+    a.shift_x_nm += share * (b.shift_x_nm - a.shift_x_nm);
+    a.shift_y_nm += share * (b.shift_y_nm - a.shift_y_nm);
+    a.tilt_x_deg += share * (b.tilt_x_deg - a.tilt_x_deg);
+    a.tilt_y_deg += share * (b.tilt_y_deg - a.tilt_y_deg);
+    a.wide.resize(b.wide.size(), 0);
+    for (std::size_t k = 0; k < b.wide.size(); ++k) a.wide[k] += share * (b.wide[k] - a.wide[k]);
+    return a;
+  }
+
+  void finish() {
+    begin(told_, "result");
+    summary_.mesh = moved(base_, modes_, amplitudes_);
+    summary_.modes = modes_;
+    summary_.deviation_nm = vertex_deviations(summary_.mesh, modes_, summary_.covariance);
+    const std::vector<Vec3> normals = vertex_normals(summary_.mesh);
+    for (std::size_t v = 0; v < summary_.mesh.vertices_nm.size(); ++v)
+      summary_.displacement_nm.push_back(
+          dot(summary_.mesh.vertices_nm[v] - summary_.before.vertices_nm[v], normals[v]));
+    for (std::size_t k = 0; k < views_.size(); ++k) add_sensitivity(k);
+    for (std::size_t v = 0; v < views_.size(); ++v) add_image(v);
+    summary_.self_intersections =
+        find_self_intersections(summary_.mesh, {.threads = job_.threads}).pairs.size();
+    add_reasons();
+    if (!job_.folder.empty()) summary_.written = write_refined(job_, summary_);
+  }
+
+  void add_sensitivity(std::size_t view) {
+    std::vector<double> at(summary_.mesh.vertices_nm.size(), 0);
+    for (std::size_t k = 0; k < modes_.size(); ++k) {
+      if (!modes_[k].is_bump()) continue;
+      const double told = std::sqrt(information_[view][k]);
+      for (const MeshMode::Move& move : modes_[k].moves) at[move.vertex] += told * length(move.by);
+    }
+    summary_.sensitivity.push_back(std::move(at));
+  }
+
+  void add_image(std::size_t v) {
+    render(summary_.mesh, v, job_.seed + 999'983);
+    weigh(v);
+    RefinedImage& out = summary_.images[v];
+    out.state = states_[v];
+    out.tilt_deg = images_.tilt_deg(v, states_[v]);
+    out.azimuth_deg = images_.azimuth_deg(v, states_[v]);
+    out.simulated = views_[v].simulated;
+    out.residual = views_[v].measured;
+    for (std::size_t p = 0; p < out.simulated.size(); ++p) {
+      double& s = out.simulated.data()[p];
+      s = states_[v].gain * s + states_[v].offset;
+      out.residual.data()[p] =
+          (out.residual.data()[p] - s) / std::sqrt(views_[v].variance.data()[p]);
+    }
+    out.unexplained = unexplained_share(views_[v], states_[v], noise_[v]);
+    const Grid<Vec3> seen = images_.seen(summary_.mesh, v, states_[v]);
+    const TriangleTree tree(summary_.mesh);
+    out.sensitivity_per_nm = Grid<double>(seen.width(), seen.height(), 0);
+    for (std::size_t p = 0; p < seen.size(); ++p) {
+      const Vec3& place = seen.data()[p];
+      if (!std::isfinite(place.x)) continue;
+      const Triangle& t = summary_.mesh.triangles[tree.closest(place).triangle];
+      const auto apart = [&](std::uint32_t corner) {
+        return length(summary_.mesh.vertices_nm[corner] - place);
+      };
+      out.sensitivity_per_nm.data()[p] =
+          summary_.sensitivity[v][*std::ranges::min_element(t, {}, apart)];
+    }
+  }
+
+  void add_reasons() {
+    if (!settled_)
+      summary_.reasons.push_back(
+          "the shape had not settled: begin with a shape that is nearer, or give more rounds");
+    if (held_)
+      summary_.reasons.push_back("the surface would have cut itself: it was held where it did not");
+    for (std::size_t v = 0; v < views_.size(); ++v)
+      if (summary_.images[v].unexplained > most_unexplained)
+        summary_.reasons.push_back(fmt::format(
+            "image {} stays unexplained: {:.0f} % of its contrast. Check its signal, tilt, azimuth "
+            "and the start",
+            v + 1, 100 * summary_.images[v].unexplained));
+  }
+
+  const RefineJob& job_;
+  const Reporter& told_;
+  JobLibraries kept_;
+  SharedLibraries libraries_;
+  RefineImages images_;
+  std::vector<RefinedView> views_;
+  std::vector<RefinedViewState> states_;
+  std::vector<std::optional<SemNoise>> flat_noise_;
+  std::vector<SemNoise> noise_;
+  TriangleMesh base_;
+  double edge_nm_ = 0;
+  std::vector<MeshMode> modes_;
+  std::vector<double> amplitudes_;
+  std::vector<std::vector<double>> information_;
+  bool settled_ = false, held_ = false;
+  RefineSummary summary_;
+};
+
+}  // namespace
+
+RefineSummary run(const RefineJob& job, const Reporter& reporter) {
+  check(job);
+  return Refinement(job, reporter).run();
+}
+
+}  // namespace surf::workflow

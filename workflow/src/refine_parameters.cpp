@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "common_parameters.h"
+#include "surf/core/some_parameters.h"
+#include "surf/mc/request/simulation_request.h"
+#include "surf/reconstruction/view.h"
+#include "surf/workflow/refine_job.h"
+#include "surf/workflow/view_settings.h"
+
+namespace surf::workflow {
+namespace {
+
+/// Beam and physics, in the form of a simulation request.
+void describe_beam(ParameterVisitor& visit, RefineJob& job) {
+  mc::SimulationRequest request;
+  request.beam.energy_ev = job.energy_ev;
+  request.beam.spot_nm = job.spot_nm;
+  request.physics = job.physics;
+  describe_some(visit, request,
+                {{.name = "beam.energy", .otherwise = "must be said"},
+                 {"beam.spot"},
+                 {"simulation.physics"}});
+  if (!visit.reads()) return;
+  job.energy_ev = request.beam.energy_ev;
+  job.spot_nm = request.beam.spot_nm;
+  job.physics = request.physics;
+}
+
+/// A length that is chosen where it is not said.
+void describe_chosen(ParameterVisitor& visit, double& length_nm, Parameter about) {
+  std::optional<double> said = length_nm > 0 ? std::optional(length_nm) : std::nullopt;
+  about.unit = Unit::nm;
+  about.limits = within(0.1, 10'000);
+  visit(said, about);
+  length_nm = said.value_or(0);
+}
+
+}  // namespace
+
+void describe(ParameterVisitor& visit, RefineJob& job) {
+  if (job.images.empty()) job.images.resize(1);
+  describe(visit, job.images.front());
+  describe_beam(visit, job);
+  ViewSettings views{job.tilts_deg, job.azimuths_deg, {}, job.signals, job.tilt_error_deg};
+  describe_some(
+      visit, views,
+      {{.name = "beam.tilt",
+        .help = "Angle of the beam from straight down in each SEM image in turn, or in all"},
+       {.name = "beam.azimuth",
+        .help = "Direction that the beam is tilted to in each SEM image: 0 is +x, 90deg is +y"},
+       {.name = "reconstruction.view_signal",
+        .help = "What each SEM image shows, with semicolons between: SE, BSE, a quadrant or a "
+                "detector as 'semsurf simulate --detector' takes it",
+        .otherwise = "SE"},
+       {.name = "reconstruction.tilt_error"}});
+  if (visit.reads()) {
+    job.tilts_deg = views.tilts_deg, job.azimuths_deg = views.azimuths_deg;
+    job.signals = views.signals, job.tilt_error_deg = views.tilt_error_deg;
+  }
+  visit(job.substrate_z_nm, {.name = "refinement.substrate",
+                             .help = "The same material fills everything below this height",
+                             .unit = Unit::nm,
+                             .limits = within(-1e6, 1e6),
+                             .otherwise = "there is none"});
+  visit(job.start_error_nm, {.name = "refinement.start_error",
+                             .help = "What the start may be off by as a whole: sizes, places, "
+                                     "angles of walls; a standard deviation",
+                             .unit = Unit::nm,
+                             .limits = within(0.01, 10'000)});
+  visit(job.height_error_nm,
+        {.name = "refinement.height_error",
+         .help = "What the start's heights may be off by: images from above tell them badly, an AFM "
+                 "scan well",
+         .unit = Unit::nm,
+         .limits = within(0.01, 10'000)});
+  visit(job.bump_error_nm, {.name = "refinement.bump_error",
+                            .help = "What it may be off by in places besides",
+                            .unit = Unit::nm,
+                            .limits = within(0.01, 10'000)});
+  visit(job.bump_length_nm, {.name = "refinement.bump_length",
+                             .help = "Over how far places are off alike",
+                             .unit = Unit::nm,
+                             .limits = within(0.1, 100'000)});
+  describe_chosen(visit, job.edge_nm,
+                  {.name = "refinement.edge",
+                   .help = "Edges of the mesh's triangles in what the images show",
+                   .otherwise = "two pixels"});
+  describe_chosen(visit, job.spacing_nm,
+                  {.name = "refinement.spacing",
+                   .help = "Distance of bumps by which the surface may change in places",
+                   .otherwise = "three edges"});
+  visit(job.smooth_rounds, {.name = "refinement.smooth_rounds",
+                            .help = "Steps of the whole shape",
+                            .limits = within(1, 20)});
+  visit(job.bump_rounds, {.name = "refinement.bump_rounds",
+                          .help = "Steps of bumps after it; 0: none",
+                          .limits = within(0, 20)});
+  visit(job.electrons, {.name = "refinement.electrons",
+                        .help = "Primaries per pixel of simulated images",
+                        .limits = within(2, 1'000'000)});
+  visit(job.effect_electrons, {.name = "refinement.effect_electrons",
+                               .help = "Primaries per pixel that tell what a change does",
+                               .limits = within(2, 1'000'000)});
+  visit(job.model_error, {.name = "refinement.model_error",
+                          .help = "What simulations may be off by, as a share of the contrast: "
+                                  "other physics, another detector",
+                          .unit = Unit::share,
+                          .limits = within(0, 1)});
+  visit(job.seed, {.name = "refinement.seed", .help = "Seed of the simulations"});
+  describe_cache(visit, job.cache);
+  describe_threads(visit, job.threads);
+  bool no_picture = !job.picture;
+  visit(no_picture, {.name = "output.no_picture",
+                     .help = "Leave out panel.png, which needs Python with Matplotlib",
+                     .recorded = false});
+  job.picture = !no_picture;
+  describe_folder(visit, job.folder, "Folder for results, created if it is missing");
+}
+
+}  // namespace surf::workflow
