@@ -48,7 +48,7 @@ NoiseEstimate estimate_flat_noise(const HeightField& field, const FlatNoiseOptio
 /// a^k).
 ///
 /// Structure that is a few pixels wide counts partly as noise, so the estimate is too large on
-/// rough surfaces; it is too small only by chance (docs/methods/noise.md says by how much). Sixth
+/// rough surfaces; it is too small only by chance (docs/explanation/noise.md says by how much). Sixth
 /// differences across rows bound it: where their median says clearly less, that is the result.
 /// Differences over so few columns hardly distinguish strong correlation from structure: |alpha| is
 /// limited to 0.9, and `alpha_at_limit` then says that structure is likely to dominate. The

@@ -16,7 +16,7 @@
 namespace surf::workflow {
 
 /// Charts how far off registration may begin, and how a reconstruction's error falls with its time,
-/// on a sample whose truth is known (docs/chart_reconstruction.md). Tip, noise, gains and (for
+/// on a sample whose truth is known (docs/how-to/chart_reconstruction.md). Tip, noise, gains and (for
 /// reconstructions) the map are the true ones, so that the method alone is judged. Only the family
 /// "chain" finds them itself, as `reconstruct` does.
 struct ChainChartJob {
