@@ -24,8 +24,8 @@ SOURCE, OUTPUT, SEMSURF = (pathlib.Path(argument).resolve() for argument in sys.
 VERSION = sys.argv[4]
 WORK = OUTPUT.with_name(OUTPUT.name + "_work")
 PAGES = WORK / "pages"
-KINDS = {"tutorials": "Tutorials", "how-to": "How-to", "reference": "Reference", "explanation": "Explanation",
-         "development": "Development"}
+KINDS = {"tutorials": "Tutorials", "how-to": "How to", "reference": "Reference", "explanation": "Explanation",
+         "development": "For developers"}   # folders, and what headings of the index begin with
 LINK = re.compile(r"(!?\[[^\]]*\]\()([^)\s]+)(\))")
 CODE = re.compile(r"(^ *```.*?^ *```$|`[^`\n]*`)", re.MULTILINE | re.DOTALL)
 EMBED = re.compile(r"^<!-- embed (\S+\.html)\n(.*?)^-->$", re.MULTILINE | re.DOTALL)
@@ -189,20 +189,24 @@ def made_by(name, commands):
 
 def title_of(place):
     text = (PAGES / place).read_text()
-    return re.search(r"^# (.+)$", text, re.MULTILINE).group(1).replace("`", "")
+    title = re.search(r"^# (.+)$", text, re.MULTILINE).group(1).replace("`", "")
+    return f"{title} (in Python)" if place.startswith("notebooks/") else title
 
 
 def navigation():
     """Pages by kind, in the order of the index; explanations in its groups, and at the end what it does not list."""
     index = (SOURCE / "docs/README.md").read_text()
-    listed = {kind: {} for kind in KINDS}
+    listed, heading = {kind: {} for kind in KINDS}, ""
     for line in index.splitlines():
+        heading = line.removeprefix("## ") if line.startswith("## ") else heading
         group = re.match(r"\| *([\w ]+?) *\|", line)
         for _, target, _ in LINK.findall(line):
             place = place_of(os.path.normpath("docs/" + target.partition("#")[0])) if "//" not in target else None
             kind = place.split("/")[0] if place else ""
             kind = "tutorials" if kind == "notebooks" else kind
-            if kind in listed and not any(place in pages for pages in listed[kind].values()):
+            if kind not in KINDS or not heading.startswith(KINDS[kind]):
+                continue
+            if not any(place in pages for pages in listed[kind].values()):
                 listed[kind].setdefault(group.group(1) if group and kind == "explanation" else "", []).append(place)
     nav = [{"Home": "index.md"}]
     for kind, title in KINDS.items():
@@ -217,7 +221,7 @@ def navigation():
         if kind == "explanation":
             nav.append({"Gallery": "gallery/README.md"})
             nav.append({"C++": "cpp/index.html"})
-    nav[-1]["Development"].append({"Changes": "changelog.md"})
+    nav[-1][KINDS["development"]].append({"Changes": "changelog.md"})
     nav.insert(1, {"Contents": "contents.md"})
     return nav
 
