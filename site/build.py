@@ -255,21 +255,22 @@ class References(html.parser.HTMLParser):
 
 
 def check():
-    pages = {path: References(path.read_text()) for path in OUTPUT.rglob("*.html") if "view" not in path.relative_to(OUTPUT).parts}
+    there = {os.path.relpath(os.path.join(folder, name), OUTPUT) for folder, _, names in os.walk(OUTPUT) for name in names}
+    pages = {name: References((OUTPUT / name).read_text()) for name in sorted(there) if re.match(r"(?!view/).*\.html$", name)}
     faults, links = [], 0
-    for path, page in pages.items():
-        where = path.relative_to(OUTPUT)
+    for where, page in pages.items():
         faults += [f"{where} loads {url}" for url in page.loaded if re.match(r"(https?:)?//", url)]
         for url in page.links + page.loaded:
             parts = urllib.parse.urlsplit(url)
-            if parts.scheme or parts.netloc or where.name == "404.html":
+            if parts.scheme or parts.netloc or where == "404.html":
                 continue
             links += 1
-            target = (path.parent / urllib.parse.unquote(parts.path)).resolve() if parts.path else path
-            target = target / "index.html" if target.is_dir() else target
-            if not target.exists():
+            path = urllib.parse.unquote(parts.path)
+            target = os.path.normpath(os.path.join(os.path.dirname(where), path)) if path else where
+            target = os.path.normpath(f"{target}/index.html") if path.endswith("/") or path == "." else target
+            if target not in there:
                 faults.append(f"{where}: {url} does not exist")
-            elif parts.fragment and target in pages and "cpp" not in where.parts and \
+            elif parts.fragment and target in pages and not where.startswith("cpp/") and \
                     urllib.parse.unquote(parts.fragment) not in pages[target].anchors:
                 faults.append(f"{where}: {url} is no heading")
     if faults:
