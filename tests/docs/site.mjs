@@ -40,11 +40,13 @@ async function open(path, { width = 1400, theme = 'light' } = {}) {
     ++asked;
     if (!request.url().startsWith(home)) outside.push(`${path}: ${request.url()}`);
   });
-  page.on('response', (answer) => { if (answer.status() >= 400 && !answer.url().endsWith('/favicon.ico')) failed.push(`${path}: ${answer.status()} ${answer.url()}`); });
+  page.on('response', (answer) => {
+    if (answer.status() >= 400 && !answer.url().endsWith('/favicon.ico')) failed.push(`${path}: ${answer.status()} ${answer.url()}`);
+  });
   page.on('pageerror', (error) => failed.push(`${path}: ${error.message}`));
   await page.setViewport({ width, height: 900, isMobile: width < 600, hasTouch: width < 600 });
   await page.emulateMediaFeatures([{ name: 'prefers-color-scheme', value: theme }]);
-  await page.goto(home + path, { waitUntil: 'load' });
+  await page.goto(home + path, { waitUntil: 'load', timeout: 300000 });
   return page;
 }
 
@@ -54,9 +56,11 @@ const pages = ['index.html', 'contents.html', 'tutorials/first_image.html', 'tut
   'gallery/index.html', 'development/architecture.html', 'source/samples/paraview_pipeline.py.html', 'changelog.html',
   'cpp/index.html'];
 
+const looks = [[1400, 'light'], [420, 'dark'], ...(pictures ? [[1400, 'dark'], [420, 'light']] : [])];
+
 async function test_pages() {
   for (const path of pages) {
-    for (const [width, theme] of [[1400, 'light'], [1400, 'dark'], [420, 'light'], [420, 'dark']]) {
+    for (const [width, theme] of looks) {
       const page = await open(path, { width, theme });
       const wide = await page.evaluate(() => document.documentElement.scrollWidth);
       if (!path.startsWith('cpp/')) assert.ok(wide <= width, `${path} is ${wide} wide in a window of ${width}`);
@@ -76,7 +80,7 @@ async function test_search() {
   const page = await open('index.html');
   await page.click('.md-search__input');
   await page.type('.md-search__input', 'Tukey');
-  await page.waitForSelector('.md-search-result__link', { timeout: 60000 });
+  await page.waitForSelector('.md-search-result__link', { timeout: 300000 });
   const found = await page.$$eval('.md-search-result__link', (links) => links.map((link) => link.href));
   assert.ok(found.some((link) => link.includes('explanation/compare.html')), `the search finds ${found}`);
   if (pictures) await page.screenshot({ path: join(pictures, 'search.png') });
@@ -98,7 +102,7 @@ async function test_interactive_page() {
   if (!frame) { console.log('semsurf was built without the viewer: no interactive pages'); return page.browserContext().close(); }
   await frame.evaluate((element) => element.scrollIntoView());
   const inside = await frame.contentFrame();
-  await inside.waitForFunction('document.documentElement.dataset.ready === "true"', { timeout: 60000 });
+  await inside.waitForFunction('document.documentElement.dataset.ready === "true"', { timeout: 300000 });
   if (pictures) await page.screenshot({ path: join(pictures, 'interactive.png') });
   await page.browserContext().close();
 }
@@ -106,7 +110,7 @@ async function test_interactive_page() {
 try {
   if (pictures) mkdirSync(pictures, { recursive: true });
   browser = await puppeteer.launch({
-    executablePath: browser_path,
+    executablePath: browser_path, protocolTimeout: 900000,
     args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
   });
   for (const test of [test_pages, test_search, test_dark_switch, test_interactive_page]) {
