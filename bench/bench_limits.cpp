@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where methods fail (docs/limits.md): runs sweeps and writes their figures and charts.
+// Where methods fail (docs/explanation/limits.md): runs sweeps and writes their figures and charts.
 //   bench_limits [NAME ...] [--out FOLDER] [--draw] [--list]
-// Without names all of them; FOLDER is docs/limits by default. With --draw charts of the figures
-// that are there.
+// Without names all of them; FOLDER is docs/explanation/limits by default. With --draw charts of
+// the figures that are there.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 
 int main(int argc, char** argv) {
   using namespace surf;
-  std::filesystem::path folder = "docs/limits";
+  std::filesystem::path folder = "docs/explanation/limits";
   std::vector<std::string> names;
   bool draw = false;
   for (int i = 1; i < argc; ++i) {

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What two processes cost beside two threads of one, and what they say to each other.
 
-    bench/bench_mpi.py [--repeats 7] [--scale 1] [--out docs/scaling] [--only CASE ...] [--tables]
+    bench/bench_mpi.py [--repeats 7] [--scale 1] [--out docs/development/scaling] [--only CASE ...] [--tables]
 
 Each repeat runs one process with two threads, two ranks with a thread each, bound to a core each, and one process with
 one thread, in an order that changes, from a warm cache of cascades. Compared is the time of the simulation proper
@@ -189,7 +189,7 @@ def main():
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--repeats", type=int, default=7)
     options.add_argument("--scale", type=float, default=1)
-    options.add_argument("--out", type=pathlib.Path, default=ROOT / "docs/scaling")
+    options.add_argument("--out", type=pathlib.Path, default=ROOT / "docs/development/scaling")
     options.add_argument("--only", nargs="+", choices=[*CASES, "stress"], default=[*CASES, "stress"])
     options.add_argument("--tables", action="store_true")
     asked = options.parse_args()

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What each tier of physics costs, and how much images differ by it: tables of
-// docs/methods/dielectric.md.
+// docs/explanation/dielectric.md.
 //   bench_tiers [ELECTRONS] [--yields FILE.svg]
 // Four scenes at 1 keV by both tiers, in turn; speeds are medians of three. An image of the tier
 // `monsel` is scaled by the gain that fits that of `dielectric` best; what is left, its noise taken

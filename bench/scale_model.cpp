@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How well a simulation scales over ranks (docs/many_machines.md): a model of the queue at the
-// leader, fed with costs that were measured, checked against runs with two ranks
+// How well a simulation scales over ranks (docs/how-to/many_machines.md): a model of the queue at
+// the leader, fed with costs that were measured, checked against runs with two ranks
 // (bench/bench_mpi.py), and asked about 16 to 4,096 of them.
 //   scale_model [--measure [--quick]] [--out FOLDER]
-// FOLDER is docs/scaling by default: costs.csv (made by --measure) and mpi.json (made by
-// bench_mpi.py) are read, check.csv, scaling.csv and scaling.svg written.
+// FOLDER is docs/development/scaling by default: costs.csv (made by --measure) and mpi.json (made
+// by bench_mpi.py) are read, check.csv, scaling.csv and scaling.svg written.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -262,7 +262,7 @@ void print(const limits::Table& table) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  fs::path folder = "docs/scaling";
+  fs::path folder = "docs/development/scaling";
   bool measure = false, quick = false;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];

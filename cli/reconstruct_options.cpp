@@ -15,7 +15,7 @@ constexpr const char* examples =
     R"(Does all of it: levels the scan, finds its noise and its tip, takes the tip off, trains a fast model of SEM images
 or takes one that was kept, registers, calibrates, and finds the surface that makes both images most likely, with
 its uncertainty. Each step can be overridden; FOLDER/report.json says what was used and how to repeat it, and
-FOLDER/panel.png shows everything: begin there. docs/reconstruction.md explains it.
+FOLDER/panel.png shows everything: begin there. docs/how-to/reconstruction.md explains it.
 Ctrl-C or a crash loses one scale at most: the same command goes on.
 Exit code 4: there is a result but not to be trusted (the report's "reasons"), or the images seem to show different places.
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# `cpack -G DEB --config build/CPackConfig.cmake`: Debian's packages, one per component (docs/packages.md). What Debian
+# `cpack -G DEB --config build/CPackConfig.cmake`: Debian's packages, one per component (docs/how-to/packages.md). What Debian
 # wants in another form or place than others (compressed pages, its own folders) is installed for its packages alone.
 option(SEMSURF_PACKAGES "Debian's packages, by cpack" ON)
 if(NOT SEMSURF_PACKAGES)

@@ -42,6 +42,7 @@ programs=(
   python3-hyperspy                                                # what reads .hspy
   g++-aarch64-linux-gnu clang qemu-user                           # AArch64
   dpkg-dev mmdebstrap lintian                                     # packages, and a clean system to try them in
+  mkdocs mkdocs-material doxygen                                  # the web site of the manual
 )
 
 say() { printf '==> %s\n' "$*"; }

@@ -32,7 +32,7 @@ sem = simple.SimulateSEM(Input=surface, Materials="Si", Energy=1000, Pixels=64, 
 
 simple.SaveData(str(out / "surface.glb"), proxy=surface)
 simple.SaveData(str(out / "surface.gsf"), proxy=eroded)
-simple.SaveData(str(out / "sem.vti"), proxy=sem, DataMode="Binary")   # not appended: docs/paraview.md
+simple.SaveData(str(out / "sem.vti"), proxy=sem, DataMode="Binary")   # not appended: docs/how-to/paraview.md
 certain.UpdatePipeline()
 low, high = servermanager.Fetch(certain).GetPointData().GetArray("z_nm" if not scan_file else 0).GetRange()
 print(f"{servermanager.Fetch(surface).GetNumberOfCells()} triangles, heights {low:.4g} to {high:.4g} nm")

@@ -22,9 +22,9 @@ struct Table {
   std::vector<double> column(const std::string& name) const;
 };
 
-/// One way to make a method fail, step by step (docs/limits.md).
+/// One way to make a method fail, step by step (docs/explanation/limits.md).
 struct Sweep {
-  std::string name;      ///< of its files in docs/limits
+  std::string name;      ///< of its files in docs/explanation/limits
   std::string question;  ///< what it shows, one line, no full stop
   std::vector<std::string> columns;
   std::vector<double> values;  ///< of the first column

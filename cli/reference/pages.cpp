@@ -24,8 +24,8 @@ std::string exit_codes_page() {
 std::string index_page() {
   return page_head(
              "Reference",
-             "What there is, in full. The pages are made from the program itself, and tests keep "
-             "them up to date.") +
+             "What there is, in full. The first pages are made from the program itself, and tests "
+             "keep them up to date. The last three are written by hand.") +
          table({"Page", "Holds"},
                {{"[Commands](commands.md)",
                  "every command, its options with defaults and ranges, and examples"},
@@ -37,7 +37,10 @@ std::string index_page() {
                 {"[Exit codes](exit_codes.md)", "what `semsurf` tells the shell when it ends"},
                 {"[semsurf.1](semsurf.1)",
                  "the manual page: `man semsurf` where semsurf is installed, else `man -l "
-                 "docs/reference/semsurf.1`"}});
+                 "docs/reference/semsurf.1`"},
+                {"[AFM files](afm_files.md)", "which files of scans are read and written"},
+                {"[SEM image files](sem_files.md)", "which files of microscopes are read"},
+                {"[Glossary](glossary.md)", "words of the field and of this manual"}});
 }
 
 std::map<std::string, std::string> pages() {

@@ -138,7 +138,7 @@ std::string scene_files_page() {
                         keys_table(t.keys));
   text +=
       "\nA file of `[[material]]` tables alone is what `--materials` takes. "
-      "[Materials](../methods/materials.md) tells how missing numbers are estimated.\n";
+      "[Materials](../explanation/materials.md) tells how missing numbers are estimated.\n";
   return text;
 }
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Builds for AArch64 on another machine: g++-aarch64-linux-gnu, or clang where SEMSURF_AARCH64_CLANG is on. Libraries are
-# those that sysroot.sh unpacked into SEMSURF_AARCH64_SYSROOT; programs run under qemu-user. docs/testing.md
+# those that sysroot.sh unpacked into SEMSURF_AARCH64_SYSROOT; programs run under qemu-user. docs/development/testing.md
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(triple aarch64-linux-gnu)

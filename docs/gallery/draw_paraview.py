@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The picture of docs/paraview.md: from a scan to a surface and what an SEM would show of it.
+"""The picture of docs/how-to/paraview.md: from a scan to a surface and what an SEM would show of it.
 
     semsurf sample nist0523-thin --size 140x100 --electrons 1 -o thin
-    PV_PLUGIN_PATH=build/lib/semsurf_paraview xvfb-run -a pvpython docs/gallery/draw_paraview.py thin/afm.gsf docs/paraview.png
+    PV_PLUGIN_PATH=build/lib/semsurf_paraview xvfb-run -a pvpython docs/gallery/draw_paraview.py thin/afm.gsf docs/how-to/paraview.png
 
 The picture there is reduced to 256 colours.
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The picture of docs/methods/sample_scenes.md: draw_scenes.py OUTPUT.png FOLDER ..., folders as 'semsurf sample'
+"""The picture of docs/how-to/sample_scenes.md: draw_scenes.py OUTPUT.png FOLDER ..., folders as 'semsurf sample'
 makes them. Needs matplotlib, numpy and Pillow."""
 import json
 import math

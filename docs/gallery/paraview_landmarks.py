@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What docs/paraview_window.png shows, for a screenshot of ParaView's window: landmarks in a scan and in an SEM image of
+"""What docs/how-to/paraview_window.png shows, for a screenshot of ParaView's window: landmarks in a scan and in an SEM image of
 the same place. FOLDER is as 'semsurf sample nist0523-thin --size 140x100 -o FOLDER' makes it.
 
     FOLDER=thin PV_PLUGIN_PATH=build/lib/semsurf_paraview paraview --script=docs/gallery/paraview_landmarks.py

@@ -4,7 +4,7 @@
 # Usage: aarch64.sh gcc|clang [some|vectors]
 #   some      of the tests build and run those of vector code
 #   vectors   compile the sources of vector code alone, and run nothing
-# Exit code 77: this machine lacks what it takes. docs/testing.md says what is run.
+# Exit code 77: this machine lacks what it takes. docs/development/testing.md says what is run.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 

@@ -112,7 +112,7 @@ THIRD_PARTY = [
     ("unistd.h", ["*"]),
 ]
 SOURCE_FOLDERS = ["libsurf", "mc_sim", "io", "workflow", "cli", "samples", "paraview_plugin", "python"]
-SPDX_FOLDERS = SOURCE_FOLDERS + ["tests", "bench", "cmake", "docs"]
+SPDX_FOLDERS = SOURCE_FOLDERS + ["tests", "bench", "cmake", "docs", "site"]
 SPDX_SUFFIXES = {".cpp", ".h", ".py", ".sh"}
 SPDX_LINE = "SPDX-License-Identifier: GPL-3.0-or-later"
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)

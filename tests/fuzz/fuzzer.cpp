@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // libFuzzer's entry. Usage: fuzz TARGET[+] [libFuzzer's options] [corpus folders]
-// TARGET+ takes what was read through the steps that follow. docs/testing.md has more.
+// TARGET+ takes what was read through the steps that follow. docs/development/testing.md has more.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>

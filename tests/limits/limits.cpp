@@ -51,7 +51,7 @@ TEST_P(Limits, IsShownOnThePage) {
   std::string pages = io::read_file(SEMSURF_LIMITS_PAGE);
   for (const auto& entry : std::filesystem::directory_iterator(SEMSURF_LIMITS))
     if (entry.path().extension() == ".md") pages += io::read_file(entry.path());
-  // "(" on the pages beside the pictures, "/" on docs/limits.md.
+  // "(" on the pages beside the pictures, "/" on docs/explanation/limits.md.
   EXPECT_THAT(pages, testing::AnyOf(HasSubstr("(" + sweep().name + ".svg"),
                                     HasSubstr("limits/" + sweep().name + ".svg")));
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Makes Debian's packages of the build folder, has lintian read them, and tries them in a clean Debian 12.
-# Usage: packages.sh BUILD SOURCE FOLDER. Exit code 77: this machine lacks what it takes. docs/packages.md says what for.
+# Usage: packages.sh BUILD SOURCE FOLDER. Exit code 77: this machine lacks what it takes. docs/how-to/packages.md says what for.
 set -euo pipefail
 build=$1 source=$2 work=$3
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every block of Python in docs/python.md: those with a mark before them are run, the others are compiled."""
+"""Every block of Python in docs/how-to/python.md: those with a mark before them are run, the others are compiled."""
 import re
 
 import numpy
@@ -8,7 +8,7 @@ import pytest
 import semsurf
 from conftest import ROOT, bumps
 
-PAGE = (ROOT / "docs/python.md").read_text()
+PAGE = (ROOT / "docs/how-to/python.md").read_text()
 BLOCKS = [(m.group(1), m.group(2), PAGE.count("\n", 0, m.start(2)))
           for m in re.finditer(r"(?:<!-- run: (\w+) -->\n)?```python\n(.*?)```", PAGE, re.DOTALL)]
 
@@ -30,7 +30,7 @@ def test_the_page_has_blocks():
 @pytest.mark.parametrize("mark, code, line", BLOCKS, ids=[f"line {line}" for *_, line in BLOCKS])
 @pytest.mark.filterwarnings("ignore::semsurf.Doubt")
 def test_block(mark, code, line, folder, capsys):
-    program = compile("\n" * line + code.replace("scan.gwy", "scan.txt"), "docs/python.md", "exec")
+    program = compile("\n" * line + code.replace("scan.gwy", "scan.txt"), "docs/how-to/python.md", "exec")
     if not mark:
         return
     exec(program, {})

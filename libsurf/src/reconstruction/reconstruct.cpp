@@ -423,7 +423,7 @@ std::vector<double> default_scales_px(ReconstructionMethod method, int width, in
   if (method == ReconstructionMethod::gauss_newton) return {5, 1.4};
   std::vector<double> scales;
   // Jones's schedule, beginning at the scale from which descents succeed: from 60 pixels they stall
-  // far from the optimum (docs/methods/reconstruction.md).
+  // far from the optimum (docs/explanation/reconstruction.md).
   const double widest = std::min(10.0, std::min(width, height) / 3.0);
   for (double s = 60; s > 0.38; s /= 1.875)
     if (s <= widest) scales.push_back(s);

@@ -24,7 +24,7 @@ struct Mixture {
 
 /// A change of the mixture: the relative change of all gains, the change of the offset, of the blur
 /// and of the film's thickness. The gains keep their ratios, because channels are so alike that
-/// their gains would compensate errors of the model (docs/methods/calibration.md).
+/// their gains would compensate errors of the model (docs/explanation/calibration.md).
 constexpr int mixture_numbers = 4;
 using MixtureChange = std::array<double, mixture_numbers>;
 

@@ -6,7 +6,7 @@
 // - its heights are quantised to a 10,000th of their range for blind tips;
 // - beyond the border its morphology repeats the edge, ours takes what is known: compared inside
 // only;
-// - its median filter is compared in bench_level alone (docs/methods/levelling.md).
+// - its median filter is compared in bench_level alone (docs/explanation/levelling.md).
 #include <cmath>
 
 #include "../io_test.h"

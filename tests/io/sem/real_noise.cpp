@@ -9,7 +9,7 @@ namespace surf::io {
 namespace {
 
 /// The affine law of variance (thesis, 8.2.2) on images of microscopes. What is asserted is in
-/// docs/methods/sem_noise.md: three obey it, two do not, and why.
+/// docs/explanation/sem_noise.md: three obey it, two do not, and why.
 class RealSemNoise : public test::RealFiles {
  protected:
   SemNoiseEstimate noise_of(const char* name) const {

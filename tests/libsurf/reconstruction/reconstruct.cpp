@@ -196,7 +196,7 @@ TEST(Reconstruct, DeviationsHoldTheErrors) {
     }
   }
   // Its edges are rounder and its curvature more even than the prior expects, so errors are larger
-  // than that; on the sample scenes 0.56 and 0.84 lie within (docs/methods/reconstruction.md).
+  // than that; on the sample scenes 0.56 and 0.84 lie within (docs/explanation/reconstruction.md).
   EXPECT_GT(within / count, 0.3);
   EXPECT_LT(within / count, 0.85);
   EXPECT_GT(within_two / count, 0.55);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Yields by losses in events, against other programs and measurements. Nothing was fitted to them:
-// docs/methods/dielectric.md.
+// docs/explanation/dielectric.md.
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -229,7 +229,7 @@ TEST(Accuracy, StopsAtItsFloor) {
 }
 
 // Pixels that take cascades from one library share some: the covariance of their noise is no more
-// than the share of the library that each takes (docs/methods/replay.md).
+// than the share of the library that each takes (docs/explanation/replay.md).
 TEST(ReplayNoise, CorrelatesPixelsNoMoreThanTheyShareCascades) {
   const Scan scan = test::row_of_pixels(0, 1, 8);
   Beam beam;

@@ -44,7 +44,7 @@ struct HeightFieldFile {
 };
 
 /// Reads a height image. The format is recognised by content, then by name, then through Gwyddion
-/// if it is installed: see docs/methods/afm_files.md. Row 0 is the lowest. The lower-left sample
+/// if it is installed: see docs/reference/afm_files.md. Row 0 is the lowest. The lower-left sample
 /// lies at (0, 0), except in semsurf's own files, which state its place. Missing samples are holes.
 /// A channel that is not a height is read only by name and with `z_unit_nm`. A unit or pitch stated
 /// in the file overrides `z_unit_nm` and the pitch given here. Throws FileError (UnknownScan for an

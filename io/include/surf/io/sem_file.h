@@ -36,7 +36,7 @@ struct SemFile {
 
 /// Reads an image in any format that OpenImageIO reads. The pixel size is taken from the metadata
 /// that Thermo/FEI, Zeiss, TESCAN, JEOL, Hitachi, ImageJ, OME-TIFF or semsurf have written into the
-/// file or beside it: see docs/methods/sem_files.md. Row 0 of the file is the top. The lower-left
+/// file or beside it: see docs/reference/sem_files.md. Row 0 of the file is the top. The lower-left
 /// pixel lies at (0, 0), except in semsurf's own files, which state its place. Grey pictures stored
 /// as RGB or with a palette become grey. Throws FileError; UsageError for an unknown channel, a
 /// pixel size out of range, or if no pixel size is known; InvalidInput for pictures in colour and

@@ -66,7 +66,7 @@ struct WebPageSummary {
 };
 
 /// Writes one HTML file that shows the surfaces in any browser. It needs nothing else and fetches
-/// nothing: see docs/methods/view.md. The same page gives the same bytes. The progress monitor
+/// nothing: see docs/how-to/view.md. The same page gives the same bytes. The progress monitor
 /// counts surfaces and images. Throws Interrupted before anything is written; InvalidInput for a
 /// page with neither surface nor image, a damaged mesh, field, image or scalar, a name that is
 /// empty or used twice, or a drape or scalar that does not exist; FileError; UsageError for a name

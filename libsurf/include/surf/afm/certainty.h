@@ -9,7 +9,7 @@
 
 namespace surf {
 
-/// Options for `certainty_map` (docs/methods/certainty.md).
+/// Options for `certainty_map` (docs/explanation/certainty.md).
 struct CertaintyOptions {
   double noise_nm = 0;  ///< standard deviation of the image's noise, >= 0
   double sigmas = 3;    ///< bound of the noise, in standard deviations, > 0

@@ -9,13 +9,13 @@
 
 namespace surf {
 
-/// Options for dilation, erosion and their combinations (docs/methods/morphology.md).
+/// Options for dilation, erosion and their combinations (docs/explanation/morphology.md).
 struct MorphologyOptions {
   /// Samples per pitch to which surface and tip are interpolated bilinearly before the operation;
   /// the result is sampled back. In [1, 32]; 1: no interpolation. It changes the results of
   /// operations in two steps (opening, closing, non-contact), at a cost that grows with its fourth
   /// power. Single operations give exactly the same result with any value, at no cost
-  /// (docs/methods/morphology.md).
+  /// (docs/explanation/morphology.md).
   int upsample = 1;
 
   /// Heights are rounded to multiples of this quantum, > 0. After that all computations are exact,

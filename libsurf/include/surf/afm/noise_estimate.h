@@ -48,13 +48,14 @@ NoiseEstimate estimate_flat_noise(const HeightField& field, const FlatNoiseOptio
 /// a^k).
 ///
 /// Structure that is a few pixels wide counts partly as noise, so the estimate is too large on
-/// rough surfaces; it is too small only by chance (docs/methods/noise.md says by how much). Sixth
-/// differences across rows bound it: where their median says clearly less, that is the result.
-/// Differences over so few columns hardly distinguish strong correlation from structure: |alpha| is
-/// limited to 0.9, and `alpha_at_limit` then says that structure is likely to dominate. The
-/// innovation is less affected than sigma. Rows are assumed independent. Standard errors come from
-/// a jackknife over bands of rows. Noiseless heights give an innovation of 0. Throws InvalidInput
-/// if there are no 5 x 3 samples without holes (7 x 3 or 9 x 3 in fields at least 7 or 9 wide).
+/// rough surfaces; it is too small only by chance (docs/explanation/noise.md says by how much).
+/// Sixth differences across rows bound it: where their median says clearly less, that is the
+/// result. Differences over so few columns hardly distinguish strong correlation from structure:
+/// |alpha| is limited to 0.9, and `alpha_at_limit` then says that structure is likely to dominate.
+/// The innovation is less affected than sigma. Rows are assumed independent. Standard errors come
+/// from a jackknife over bands of rows. Noiseless heights give an innovation of 0. Throws
+/// InvalidInput if there are no 5 x 3 samples without holes (7 x 3 or 9 x 3 in fields at least 7 or
+/// 9 wide).
 NoiseEstimate estimate_noise(const HeightField& field);
 
 }  // namespace surf

@@ -8,7 +8,7 @@ namespace surf {
 // A module is a part of semsurf that needs large third-party libraries. It offers its functions in
 // one table. A program either links the module or loads it from a file on first use, so that unused
 // libraries cost nothing. `semsurf_module` in cmake/modules.cmake builds both forms;
-// docs/architecture.md lists the modules.
+// docs/development/architecture.md lists the modules.
 
 /// The name of a module, and the texts for the message that it is missing.
 struct ModuleName {
@@ -17,7 +17,7 @@ struct ModuleName {
   const char* needs;     ///< "VTK (Debian: libvtk9.1 ...)"
   /// Address space that loading needs, including the threads that the libraries start.
   int address_mb;
-  const char* package = "semsurf";  ///< of semsurf, that it is in (docs/packages.md)
+  const char* package = "semsurf";  ///< of semsurf, that it is in (docs/how-to/packages.md)
 };
 
 /// Returns the module's table of functions, or null if the module was built for another version of

@@ -172,15 +172,16 @@ struct Reconstruction {
 std::vector<double> default_scales_px(ReconstructionMethod method, int width, int height);
 
 /// Finds the surface that maximises the likelihood of both images, or of the given one (thesis,
-/// chapter 9; docs/methods/reconstruction.md). Throws InvalidInput for impossible data, or if fewer
-/// than 256 AFM pixels (16 x 16) overlap the SEM image; UsageError for options out of range;
+/// chapter 9; docs/explanation/reconstruction.md). Throws InvalidInput for impossible data, or if
+/// fewer than 256 AFM pixels (16 x 16) overlap the SEM image; UsageError for options out of range;
 /// Interrupted.
 Reconstruction reconstruct(const AfmData* afm, const SemData* sem,
                            const ReconstructionOptions& options = {},
                            ReconstructionJournal* journal = nullptr);
 
-/// The same with further SEM images of the surface, from other sides (docs/methods/views.md). The
-/// first image is looked at from above: the surface is in its frame. Only Gauss-Newton knows them.
+/// The same with further SEM images of the surface, from other sides (docs/explanation/views.md).
+/// The first image is looked at from above: the surface is in its frame. Only Gauss-Newton knows
+/// them.
 Reconstruction reconstruct(const AfmData* afm, const SemData* sem,
                            const std::vector<SemView>& views, const ReconstructionOptions& options,
                            ReconstructionJournal* journal = nullptr);

@@ -36,11 +36,11 @@ struct DiffusionMatrixParameters {
 /// the outward flux through the facets of all surrounding pixels, as if matter were everywhere.
 ///
 /// The original method tabulates the flux for a choice of orientations. Here the flux for any
-/// orientation is computed from moments: the flux out of a facet with the normal n is 1/2 (<v n> +
-/// <|v n|>). |c| is approximated by 3/16 + 15/16 c^2 (Legendre polynomials of degree 0 and 2). This
-/// is exact if the distribution of directions has degree 3 at most, and its error never exceeds
-/// 3/16. Moments are averaged over a pixel's column and are smooth in height (quadratic B-splines).
-/// A facet has its pixel's height, and its slope by central differences.
+/// orientation is computed from moments: the flux out of a facet with the normal n is 1/2 (mean of
+/// v n + mean of |v n|). |c| is approximated by 3/16 + 15/16 c^2 (Legendre polynomials of degree 0
+/// and 2). This is exact if the distribution of directions has degree 3 at most, and its error
+/// never exceeds 3/16. Moments are averaged over a pixel's column and are smooth in height
+/// (quadratic B-splines). A facet has its pixel's height, and its slope by central differences.
 ///
 /// The model neglects electrons that leave the surface and enter it again. It counts an electron
 /// that crosses the surface several times each time it goes out. The scope needs a pixel size, and

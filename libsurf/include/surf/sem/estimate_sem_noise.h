@@ -97,9 +97,9 @@ struct SemNoiseEstimate {
 /// this ratio is independent of the variance (Basu 1955), so the choice does not make the noise too
 /// small; the noise may be correlated. In the fit, each variance has the weight of its own error.
 /// Points beyond 3.5 standard errors are left out, until nothing changes. See
-/// docs/methods/sem_noise.md. Blocks with invalid pixels or more than 0.5 % saturated pixels do not
-/// count. Throws UsageError for options out of range; InvalidInput for regions outside the image or
-/// too small, and if there are no flat blocks or no noise.
+/// docs/explanation/sem_noise.md. Blocks with invalid pixels or more than 0.5 % saturated pixels do
+/// not count. Throws UsageError for options out of range; InvalidInput for regions outside the
+/// image or too small, and if there are no flat blocks or no noise.
 SemNoiseEstimate estimate_sem_noise(const PlacedImage& image, const SemNoiseOptions& options = {});
 
 /// Estimates the noise from an image and the model's value for each of its pixels: the most likely

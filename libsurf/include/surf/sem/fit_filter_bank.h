@@ -39,7 +39,7 @@ struct FilterBankFit {
 /// result to coefficients of slopes and curvatures. The weight of a pixel is 1 / (standard error^2
 /// + misfit^2); the misfit is the part of the residuals beyond the noise in a first fit with equal
 /// weights. Weights by the noise alone would spend the model's freedom on dark pixels, whose noise
-/// is smallest, at the expense of other pixels (docs/methods/filter_bank.md). Without standard
+/// is smallest, at the expense of other pixels (docs/explanation/filter_bank.md). Without standard
 /// errors all pixels have the same weight. Images are processed block by block; the memory grows
 /// with their size only by a triangle of 33 x 33 numbers per 5000 pixels or so. Throws InvalidInput
 /// for images that cannot be used or names that do not fit their channels, UsageError for a cut-off

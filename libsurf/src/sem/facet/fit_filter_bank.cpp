@@ -21,7 +21,7 @@ using Eigen::VectorXd;
 using facet::Block;
 
 // Above it, errors are many times larger on surfaces slightly different from the training surfaces:
-// docs/methods/filter_bank.md.
+// docs/explanation/filter_bank.md.
 constexpr double trusted_condition = 100;
 constexpr double pixels_per_unknown = 20;
 

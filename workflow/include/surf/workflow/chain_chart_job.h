@@ -16,9 +16,9 @@
 namespace surf::workflow {
 
 /// Charts how far off registration may begin, and how a reconstruction's error falls with its time,
-/// on a sample whose truth is known (docs/chart_reconstruction.md). Tip, noise, gains and (for
-/// reconstructions) the map are the true ones, so that the method alone is judged. Only the family
-/// "chain" finds them itself, as `reconstruct` does.
+/// on a sample whose truth is known (docs/how-to/chart_reconstruction.md). Tip, noise, gains and
+/// (for reconstructions) the map are the true ones, so that the method alone is judged. Only the
+/// family "chain" finds them itself, as `reconstruct` does.
 struct ChainChartJob {
   std::filesystem::path sample;  ///< a folder that `semsurf sample` made
   std::filesystem::path folder;  ///< for all output; created if it is missing

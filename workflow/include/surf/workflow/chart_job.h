@@ -16,7 +16,7 @@
 namespace surf::workflow {
 
 /// Times every way to make a scene's image and compares the images with a reference
-/// (docs/chart.md).
+/// (docs/how-to/chart.md).
 struct ChartJob {
   io::SceneFile scene;
   std::filesystem::path folder;  ///< for all output; created if it is missing

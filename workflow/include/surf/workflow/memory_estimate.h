@@ -38,7 +38,7 @@ struct MemoryUse {
 };
 
 /// Estimates the memory that grows with the number of triangles. Calibrated by
-/// `bench/bench_large_specimen.py`, see docs/many_machines.md.
+/// `bench/bench_large_specimen.py`, see docs/how-to/many_machines.md.
 MemoryEstimate estimate_specimen(const TriangleCount& count, const MemoryUse& use = {});
 
 struct MemoryThere {

@@ -85,7 +85,7 @@ struct SampleSummary {
   std::vector<std::filesystem::path> written;
 };
 
-/// Makes two images of a sample surface and records the truth (docs/methods/sample_scenes.md):
+/// Makes two images of a sample surface and records the truth (docs/how-to/sample_scenes.md):
 ///   afm.gsf        the scan: the surface on a grid three times as fine, dilated by the tip, every
 ///                  third sample; correlated noise; a tilt
 ///   sem.tif        the SEM image, by Monte Carlo: channel "signal", 32-bit floats

@@ -19,7 +19,7 @@ struct SweepRun {
   std::function<SimulateJob()> make;
 };
 
-/// Simulates over a grid of settings (docs/many_machines.md).
+/// Simulates over a grid of settings (docs/how-to/many_machines.md).
 struct SweepJob {
   std::filesystem::path folder;   ///< for all output; created if it is missing
   std::vector<std::string> axes;  ///< names of the varied settings: "energy", "tilt"

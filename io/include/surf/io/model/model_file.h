@@ -8,7 +8,7 @@
 
 namespace surf::io {
 
-/// Reads a model file: JSON for people and programs, see docs/methods/training.md. Unknown keys are
+/// Reads a model file: JSON for people and programs, see docs/how-to/training.md. Unknown keys are
 /// ignored. Throws FileError, naming the field, if a field is missing, not finite or out of range,
 /// if the kind of model is unknown, or if the file is of a newer version.
 TrainedModel read_model(const std::filesystem::path& path);

@@ -15,7 +15,7 @@ std::optional<std::string> doubt_of_a_metal(const Material& material);
 
 /// What a person should know before trusting images of this material: `doubt_of_a_metal`, and which
 /// of its numbers are estimates. E_b is left out: `loss_join_fitted` tells of it. See
-/// docs/methods/materials.md.
+/// docs/explanation/materials.md.
 std::vector<std::string> doubts(const Material& material);
 
 }  // namespace surf::mc

@@ -131,7 +131,7 @@ struct Histogram {
 };
 
 /// Mean counts per primary, and the standard error of that mean from the scatter of the primaries'
-/// totals: sqrt((<x^2> - <x>^2) / (n - 1)); 0 for fewer than two primaries.
+/// totals: sqrt((mean of x^2 - (mean of x)^2) / (n - 1)); 0 for fewer than two primaries.
 struct Estimate {
   double mean = 0;
   double standard_error = 0;
