@@ -19,7 +19,7 @@ u = at + (np.arange(31) - 15) * PITCH_NM
 shape = np.interp(at, x, scan) - tip[::-1]
 axes.plot(u[shape < 75], shape[shape < 75], color=BLACK)
 axes.plot([at], [np.interp(at, x, scan)], "o", color=BLACK, markersize=4)
-axes.annotate("tip, its apex on the scan", (u[3], shape[3]), (20, 62), arrowprops={"arrowstyle": "-", "color": BLACK, "linewidth": 0.7})
+axes.annotate("tip", (u[2], shape[2]), (46, 68), arrowprops={"arrowstyle": "-", "color": BLACK, "linewidth": 0.7})
 axes.set(xlim=(40, 250), ylim=(-8, 76), xlabel="x (nm)", ylabel="height (nm)", aspect="equal")
 axes.legend(loc="upper right")
 save(figure, "erosion.svg")

@@ -3,6 +3,7 @@
 needs numpy, matplotlib and Pillow."""
 import contextlib
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -37,6 +38,16 @@ def workshop():
         yield run, pathlib.Path(name)
 
 
+def make_pads(run, folder):
+    """A pair whose truth is known, in pads/, and the surface found from it, in result/. PADS, a second argument, has both already."""
+    if len(sys.argv) > 2:
+        return pathlib.Path(sys.argv[2]).resolve()
+    run("sample pads -o pads --size 192x144 --electrons 200")
+    run("reconstruct --afm pads/afm.gsf --sem pads/sem.tif --material Si --energy 1keV --model samples/si-1keV-10nm.json "
+        "--truth pads/truth.gsf -o result")
+    return folder
+
+
 def heights_nm(path):
     """Of a Gwyddion Simple Field; row 0 is the lowest."""
     content = pathlib.Path(path).read_bytes()
@@ -52,7 +63,7 @@ def channels(path):
     image, found = Image.open(path), {}
     for page in range(image.n_frames):
         image.seek(page)
-        name = image.tag_v2.get(270, str(page)).split("\n")[0].strip()
+        name = re.search(r"image:channels=(\S+)", image.tag_v2[270]).group(1)
         found[name] = np.array(image)[::-1]
     return found
 
