@@ -15,7 +15,8 @@ import subprocess
 import sys
 import tempfile
 
-PAGE, PROGRAM = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+if __name__ == "__main__":   # tests/python uses missing()
+    PAGE, PROGRAM = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BLOCK = re.compile(r"^```(sh|text)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
@@ -73,8 +74,9 @@ def take_pictures(folder):
         print(f"written {picture}")
 
 
-with tempfile.TemporaryDirectory(prefix="semsurf-page-") as name:
-    (pathlib.Path(name) / "samples").symlink_to(ROOT / "samples")
-    run(pathlib.Path(name))
-    if "--pictures" in sys.argv:
-        take_pictures(pathlib.Path(name))
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory(prefix="semsurf-page-") as name:
+        (pathlib.Path(name) / "samples").symlink_to(ROOT / "samples")
+        run(pathlib.Path(name))
+        if "--pictures" in sys.argv:
+            take_pictures(pathlib.Path(name))

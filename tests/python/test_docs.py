@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every block of Python in docs/how-to/python.md: those with a mark before them are run, the others are compiled."""
+"""Every block of Python in docs/how-to/python.md: those with a mark before them are run, the others are compiled. Blocks of
+docs/tutorials/python.md are run one after the other, and what the page prints is compared."""
 import re
+import sys
 
 import numpy
 import pytest
@@ -8,6 +10,10 @@ import pytest
 import semsurf
 from conftest import ROOT, bumps
 
+sys.path.insert(0, str(ROOT / "tests/docs"))
+from run_page import missing  # noqa: E402
+
+TUTORIAL = ROOT / "docs/tutorials/python.md"
 PAGE = (ROOT / "docs/how-to/python.md").read_text()
 BLOCKS = [(m.group(1), m.group(2), PAGE.count("\n", 0, m.start(2)))
           for m in re.finditer(r"(?:<!-- run: (\w+) -->\n)?```python\n(.*?)```", PAGE, re.DOTALL)]
@@ -47,3 +53,20 @@ def test_the_page_names_what_there_is():
     for name in re.findall(r"`semsurf\.(\w+)", PAGE):
         assert hasattr(semsurf, name), name
     assert numpy.ndim(bumps()) == 2
+
+
+@pytest.mark.long
+@pytest.mark.filterwarnings("ignore::semsurf.Doubt")
+def test_tutorial(folder, capsys, monkeypatch):
+    pytest.importorskip("matplotlib", reason="python3-matplotlib is not there").use("Agg")
+    page = TUTORIAL.read_text()
+    names, said = {}, ""
+    for block in re.finditer(r"^```(python|text)\n(.*?)^```", page, re.MULTILINE | re.DOTALL):
+        kind, body = block.groups()
+        if kind == "python":
+            exec(compile("\n" * page.count("\n", 0, block.start(2)) + body, str(TUTORIAL), "exec"), names)
+            said = capsys.readouterr().out
+        else:
+            assert missing(body, said) is None, said
+    for picture in re.findall(r"images/python_(\w+\.png)", page):
+        assert (folder / picture).stat().st_size > 5000

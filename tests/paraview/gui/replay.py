@@ -125,4 +125,5 @@ def main():
         fail(f"{' and '.join(bad)} look otherwise than in {HERE}; --keep FOLDER keeps what was made")
 
 
-main()
+if __name__ == "__main__":
+    main()
