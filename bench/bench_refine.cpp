@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far meshes with undercuts are off that `semsurf refine` finds from two tilted SEM images, and
 // whether their errors hold. The images are by the other tier of physics:
-//   bench_refine [FOLDER [CASES [SEED [own]]]]   with a folder (or ""), inputs and results go there;
-//   CASES: names with commas between, as line100,cube; own: images by the physics of the fit
+//   bench_refine [FOLDER [CASES [SEED [own]]]]   with a folder (or ""), inputs and results go
+//   there; CASES: names with commas between, as line100,cube; own: images by the physics of the fit
 // Lines 100 nm high whose walls lean by 75 to 100 degrees, a mushroom, a cube on a pillar; pixels
 // of 4 nm, 150 electrons each, a spot of 2 nm; starts that are 5 to 10 nm off. Tilts to both sides.
 #include <fmt/format.h>

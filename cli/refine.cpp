@@ -154,7 +154,8 @@ void add_refine(CLI::App& app, Action& action) {
                        {"job", "Output"}};
   o->bound.looks["output"] = {.name = "-o,--output"};
   o->bound.add<io::MaterialChoice>(*sub, "");
-  o->bound.add<io::SpecimenRequest>(*sub, "Specimen", {}, {"specimen.unit", "specimen.override_unit"});
+  o->bound.add<io::SpecimenRequest>(*sub, "Specimen", {},
+                                    {"specimen.unit", "specimen.override_unit"});
   o->bound.add<RefineFiles>(*sub, "");
   o->bound.add<workflow::RefineJob>(*sub, "");
   add_quiet_flag(*sub, o->quiet)->group("Output");

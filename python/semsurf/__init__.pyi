@@ -1015,6 +1015,45 @@ def compare(
     """Where a surface differs from another beyond their errors."""
 
 
+def refine(
+    start: PathLike | Mesh | HeightField | ArrayLike,
+    sem: PathLike | Image | ArrayLike | Sequence,
+    *,
+    progress: bool | Callable[[float, float, str], object] | None = None,
+    material: str | None = None,
+    materials: PathLike | Sequence[PathLike] | None = None,
+    unit: str | None = None,
+    override_unit: bool = False,
+    sem_channel: str | None = None,
+    pixel_size: float | str | None = None,
+    energy: float | str | None = None,
+    spot: float | str = '0nm',
+    physics: str | Mapping[str, str] | None = None,
+    tilt: str | float | Sequence | None = None,
+    azimuth: str | float | Sequence | None = None,
+    view_signal: str | float | Sequence | None = None,
+    tilt_error: float | str = '0.2deg',
+    substrate: float | str | None = None,
+    start_error: float | str = '10nm',
+    height_error: float | str = '10nm',
+    bump_error: float | str = '3nm',
+    bump_length: float | str = '20nm',
+    edge: float | str | None = None,
+    spacing: float | str | None = None,
+    smooth_rounds: int = 3,
+    bump_rounds: int = 2,
+    electrons: int = 200,
+    effect_electrons: int = 40,
+    model_error: float | str = '6%',
+    seed: int = 1,
+    cache: PathLike | None = None,
+    threads: int | None = None,
+    no_picture: bool = False,
+    output: PathLike | None = None,
+) -> Findings:
+    """Let a mesh, undercuts included, agree with SEM images from several sides."""
+
+
 def write_mesh(
     path: PathLike,
     mesh: Mesh | PathLike | Sequence | dict,

@@ -89,11 +89,14 @@ py::object refine(const Call& call) {
 }  // namespace
 
 void add_refine(py::module_& module) {
-  Function f{.name = "refine",
-             .summary = "Let a mesh, undercuts included, agree with SEM images from several sides."};
+  Function f{
+      .name = "refine",
+      .summary = "Let a mesh, undercuts included, agree with SEM images from several sides."};
   f.details =
-      "Vertices of the mesh move until simulated images of it agree with the SEM images: first the\n"
-      "whole shape (sizes, angles of walls), then bumps. The start is a closed body, or a sheet that\n"
+      "Vertices of the mesh move until simulated images of it agree with the SEM images: first "
+      "the\n"
+      "whole shape (sizes, angles of walls), then bumps. The start is a closed body, or a sheet "
+      "that\n"
       "goes on level beyond its rim.";
   f.arguments = {{"start", "PathLike | Mesh | HeightField | ArrayLike",
                   "A mesh that is about right: drawn, or a reconstruction.", true, false},

@@ -142,8 +142,8 @@ Grid<Vec3> RefineImages::seen(const TriangleMesh& mesh, std::size_t view,
 
 void RefineImages::add_effects(const TriangleMesh& base, const std::vector<MeshMode>& modes,
                                const std::vector<double>& amplitudes_nm,
-                               const std::vector<RefinedViewState>& states, std::int64_t all_electrons,
-                               std::uint64_t seed, const Watch& watch,
+                               const std::vector<RefinedViewState>& states,
+                               std::int64_t all_electrons, std::uint64_t seed, const Watch& watch,
                                std::vector<RefinedView>& views, std::int64_t& counted) const {
   constexpr int halves = 2;
   const std::int64_t electrons = std::max<std::int64_t>(1, all_electrons / halves);

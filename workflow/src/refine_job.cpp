@@ -30,22 +30,21 @@
 namespace surf::workflow {
 namespace {
 
-constexpr double unrelated = 0.3;        // correlation of images that show different things
-constexpr double largest_step = 2;       // of an amplitude, over its prior deviation
-constexpr double settled = 0.7;          // over its deviation: nothing moves any more
+constexpr double unrelated = 0.3;   // correlation of images that show different things
+constexpr double largest_step = 2;  // of an amplitude, over its prior deviation
+constexpr double settled = 0.7;     // over its deviation: nothing moves any more
 constexpr double settled_of_prior = 0.02;
-constexpr double shift_pixels = 3;       // what images' places may be off by
-constexpr double as_good = 0.03;         // correlations that differ by less
-constexpr double least_relief = 0.1;     // of the height, above or below the ground
-constexpr double correlation_nm = 4;     // of what simulations are off by
-constexpr double wide_correlations = 10; // they are off as much over wide parts
-constexpr double edges_per_spacing = 3;  // triangles between bumps
+constexpr double shift_pixels = 3;        // what images' places may be off by
+constexpr double as_good = 0.03;          // correlations that differ by less
+constexpr double least_relief = 0.1;      // of the height, above or below the ground
+constexpr double correlation_nm = 4;      // of what simulations are off by
+constexpr double wide_correlations = 10;  // they are off as much over wide parts
+constexpr double edges_per_spacing = 3;   // triangles between bumps
 constexpr double most_unexplained = 0.5;
-constexpr double blur_nm = 10;  // of the first round: walls may be off by as much
-constexpr double beside_nm = 40;         // what images show, the mesh is fine, too
+constexpr double beside_nm = 40;  // what images show, the mesh is fine, too
 constexpr double sheet_heights = 3, least_sheet_nm = 80;  // how far a sheet goes on
 constexpr int few_modes = 4;  // times as many electrons for the effects of a few modes
-constexpr int halvings = 6;                               // of steps that make a mesh cut itself
+constexpr int halvings = 6;   // of steps that make a mesh cut itself
 
 void check(const RefineJob& job) {
   if (job.material.name.empty())
@@ -171,7 +170,7 @@ class Refinement {
     const ModePrior prior{job_.start_error_nm, job_.height_error_nm, job_.bump_error_nm,
                           job_.bump_length_nm};
     begin(told_, "whole shape");
-    const double blur_px = blur_nm / pixel;
+    const double blur_px = job_.start_error_nm / pixel;
     take_modes(smooth_modes(base_, relief_box(box), fade_nm(), SmoothKind::walls));
     for (const double share : {1.0, 0.0})
       rounds(job_.smooth_rounds, prior, 1000, share * blur_px, few_modes * job_.effect_electrons);
@@ -223,8 +222,8 @@ class Refinement {
     std::ranges::fill(view.variance.data(), 1.0);
     fit_gain(view, states_[v]);
     const RefinedViewState& s = states_[v];
-    noise_[v] = flat_noise_[v] ? *flat_noise_[v]
-                               : noise_of_rest(job_.images[v].image, view.simulated, s);
+    noise_[v] =
+        flat_noise_[v] ? *flat_noise_[v] : noise_of_rest(job_.images[v].image, view.simulated, s);
     std::vector<double> levels;
     for (const double y : view.simulated.data()) levels.push_back(s.gain * y + s.offset);
     const double middle = median(levels);
@@ -232,14 +231,14 @@ class Refinement {
                                            (view.placement.pitch_x_nm * view.placement.pitch_y_nm));
     for (std::size_t p = 0; p < levels.size(); ++p) {
       const double off = job_.model_error * (levels[p] - middle);
-      view.variance.data()[p] =
-          noise_[v].variance(levels[p]) + off * off * alike +
-          (flat_noise_[v] ? s.gain * s.gain * chance.data()[p] : 0);
+      view.variance.data()[p] = noise_[v].variance(levels[p]) + off * off * alike +
+                                (flat_noise_[v] ? s.gain * s.gain * chance.data()[p] : 0);
     }
     double squares = 0;
     for (const double level : levels) squares += (level - middle) * (level - middle);
     view.wide_error =
-        job_.model_error * std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, levels.size())));
+        job_.model_error *
+        std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, levels.size())));
     view.wide_nm = wide_correlations * correlation_nm;
     fit_gain(view, states_[v]);
   }

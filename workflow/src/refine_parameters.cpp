@@ -66,12 +66,13 @@ void describe(ParameterVisitor& visit, RefineJob& job) {
                                      "angles of walls; a standard deviation",
                              .unit = Unit::nm,
                              .limits = within(0.01, 10'000)});
-  visit(job.height_error_nm,
-        {.name = "refinement.height_error",
-         .help = "What the start's heights may be off by: images from above tell them badly, an AFM "
-                 "scan well",
-         .unit = Unit::nm,
-         .limits = within(0.01, 10'000)});
+  visit(
+      job.height_error_nm,
+      {.name = "refinement.height_error",
+       .help = "What the start's heights may be off by: images from above tell them badly, an AFM "
+               "scan well",
+       .unit = Unit::nm,
+       .limits = within(0.01, 10'000)});
   visit(job.bump_error_nm, {.name = "refinement.bump_error",
                             .help = "What it may be off by in places besides",
                             .unit = Unit::nm,

@@ -278,10 +278,9 @@ ModeFit fit_modes(const std::vector<RefinedView>& views,
   Eigen::MatrixXd root = Eigen::MatrixXd::Zero(all, all);
   Eigen::VectorXd center = Eigen::VectorXd::Zero(all);  // of the prior, in standard deviations
   root.topLeftCorner(size, size) = square(prior, modes).llt().matrixL();
-  center.head(size) =
-      root.topLeftCorner(size, size)
-          .triangularView<Eigen::Lower>()
-          .solve(-Eigen::Map<const Eigen::VectorXd>(amplitudes.data(), size));
+  center.head(size) = root.topLeftCorner(size, size)
+                          .triangularView<Eigen::Lower>()
+                          .solve(-Eigen::Map<const Eigen::VectorXd>(amplitudes.data(), size));
   Eigen::MatrixXd told = Eigen::MatrixXd::Zero(all, all), seen = told;
   Eigen::VectorXd pull = Eigen::VectorXd::Zero(all);
   ModeFit out;
@@ -348,8 +347,8 @@ double misfit(const std::vector<RefinedView>& views, const std::vector<RefinedVi
     const std::vector<double> weights = weights_of(view);
     const Grid<double> wide = wide_error(view, s);
     for (std::size_t p = 0; p < weights.size(); ++p) {
-      const double off = view.measured.data()[p] - s.offset - s.gain * view.simulated.data()[p] -
-                         wide.data()[p];
+      const double off =
+          view.measured.data()[p] - s.offset - s.gain * view.simulated.data()[p] - wide.data()[p];
       sum += weights[p] * off * off;
     }
     off_by(s.shift_x_nm - view.shift_x_nm, view.shift_error_nm);

@@ -69,8 +69,8 @@ const std::vector<double> nothing(modes, 0);
 TEST(FitModes, FindsAmplitudesAndShift) {
   const std::vector<double> truth{1, -2, 0.5, 3, 0, -1};
   for (const double shift_nm : {0.0, 0.3}) {
-    const ModeFit fit = fit_modes({made_view(truth, 1, 0.1, 0, shift_nm)}, {{80, 12}}, nothing,
-                                  wide_prior(20));
+    const ModeFit fit =
+        fit_modes({made_view(truth, 1, 0.1, 0, shift_nm)}, {{80, 12}}, nothing, wide_prior(20));
     // The slopes that shifts are told by are those of smoothed images.
     for (std::size_t k = 0; k < modes; ++k)
       EXPECT_NEAR(fit.amplitudes_nm[k], truth[k], shift_nm > 0 ? 0.1 : 0.03);
@@ -146,8 +146,8 @@ TEST(FitModes, WhatSimulationsAreOffByInWidePartsIsNoSurface) {
   const auto largest = [](const ModeFit& fit) {
     double most = 0;  // in standard errors
     for (std::size_t k = 0; k < modes; ++k)
-      most = std::max(most, std::abs(fit.amplitudes_nm[k]) /
-                                std::sqrt(fit.covariance[k * modes + k]));
+      most =
+          std::max(most, std::abs(fit.amplitudes_nm[k]) / std::sqrt(fit.covariance[k * modes + k]));
     return most;
   };
   const ModeFit taken_in = fit_modes({views[0]}, {{80, 12}}, nothing, wide_prior(2)),

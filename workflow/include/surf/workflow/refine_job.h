@@ -31,9 +31,9 @@ struct RefineJob {
   mc::Material material;
   mc::Physics physics;
   double energy_ev = 1000, spot_nm = 0;
-  double start_error_nm = 10;  ///< what the start may be off by as a whole
+  double start_error_nm = 10;   ///< what the start may be off by as a whole
   double height_error_nm = 10;  ///< likewise its heights, which an AFM scan tells
-  double bump_error_nm = 3;    ///< and in places, over `bump_length_nm`
+  double bump_error_nm = 3;     ///< and in places, over `bump_length_nm`
   double bump_length_nm = 20;
   double edge_nm = 0;                  ///< of the mesh's triangles; 0: chosen by the pixels
   double spacing_nm = 0;               ///< of bumps; 0: chosen by the triangles
