@@ -41,7 +41,7 @@ constexpr double correlation_nm = 4;      // of what simulations are off by
 constexpr double wide_correlations = 10;  // they are off as much over wide parts
 constexpr double edges_per_spacing = 3;   // triangles between bumps
 constexpr double most_unexplained = 0.5;
-constexpr double beside_nm = 40;  // what images show, the mesh is fine, too
+constexpr double beside_nm = 40;                          // what images show, the mesh is fine, too
 constexpr double sheet_heights = 3, least_sheet_nm = 80;  // how far a sheet goes on
 constexpr int few_modes = 4;  // times as many electrons for the effects of a few modes
 constexpr int halvings = 6;   // of steps that make a mesh cut itself
@@ -171,14 +171,14 @@ class Refinement {
                           job_.bump_length_nm};
     begin(told_, "whole shape");
     const double blur_px = job_.start_error_nm / pixel;
-    take_modes(smooth_modes(base_, relief_box(box), fade_nm(), SmoothKind::walls));
+    take_modes(smooth_modes(base_, relief_box(box), SmoothKind::walls));
     for (const double share : {1.0, 0.0})
       rounds(job_.smooth_rounds, prior, 1000, share * blur_px, few_modes * job_.effect_electrons);
     // The result so far is what bumps stand on.
     if (job_.bump_rounds > 0) {
       begin(told_, "bumps");
       base_ = moved(base_, modes_, amplitudes_);
-      std::vector<MeshMode> all = smooth_modes(base_, relief_box(seen_box()), fade_nm());
+      std::vector<MeshMode> all = smooth_modes(base_, relief_box(seen_box()));
       std::vector<MeshMode> bumps = bump_modes(base_, in_view(), spacing);
       all.insert(all.end(), bumps.begin(), bumps.end());
       take_modes(std::move(all));
@@ -195,14 +195,12 @@ class Refinement {
     return out;
   }
 
-  /// Over how far beside the relief what smooth modes do fades away: a sheet's rim stays.
-  double fade_nm() const { return sheet_heights * bounds(base_).size_nm().z + least_sheet_nm; }
-
   /// A sheet goes on beside what images show.
   void extend_start() {
     base_ = job_.start;
     std::string reason;
-    if (std::optional<TriangleMesh> wide = extend_open_sheet(base_, fade_nm(), reason))
+    const double by_nm = sheet_heights * bounds(base_).size_nm().z + least_sheet_nm;
+    if (std::optional<TriangleMesh> wide = extend_open_sheet(base_, by_nm, reason))
       base_ = std::move(*wide);
   }
 

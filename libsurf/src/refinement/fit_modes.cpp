@@ -40,17 +40,6 @@ struct Column {
   std::vector<double> values;
 };
 
-/// Whether two simulations of an effect have more in common than chance makes.
-bool is_sure(const ModeEffect& e, const std::vector<double>& weights) {
-  constexpr double sure = 3;  // standard deviations
-  double common = 0, squares = 0;
-  for (std::size_t i = 0; i < e.pixels.size(); ++i) {
-    const double product = weights[e.pixels[i]] * e.first[i] * e.second[i];
-    common += product, squares += product * product;
-  }
-  return common > sure * std::sqrt(squares);
-}
-
 Column column_of(const std::vector<std::uint32_t>& pixels, std::vector<double> values,
                  double factor) {
   for (double& v : values) v *= factor;
@@ -181,9 +170,8 @@ ViewEquations equations_of(const RefinedView& view, const RefinedViewState& stat
   const std::vector<double> weights = weights_of(view);
   std::vector<Column> first, second;
   const auto add_effect = [&](const ModeEffect& e) {
-    const bool tells = is_sure(e, weights);
-    first.push_back(tells ? column_of(e.pixels, e.first, state.gain) : Column{});
-    second.push_back(tells ? column_of(e.pixels, e.second, state.gain) : Column{});
+    first.push_back(column_of(e.pixels, e.first, state.gain));
+    second.push_back(column_of(e.pixels, e.second, state.gain));
   };
   const auto add = [&](Column column) {
     first.push_back(column), second.push_back(std::move(column));

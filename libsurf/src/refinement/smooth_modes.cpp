@@ -2,6 +2,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <map>
+#include <utility>
 
 #include "surf/refinement/mesh_modes.h"
 
@@ -22,12 +25,15 @@ Vec3 place_in(const Box& box, const Vec3& p) {
   return {one(p.x, middle.x, size.x), one(p.y, middle.y, size.y), one(p.z, middle.z, size.z)};
 }
 
-/// 1 within the box seen from above, and falling to 0 where a place is `fade_nm` beside it.
-double share(const Box& box, const Vec3& p, double fade_nm) {
-  const double x = std::max({box.lower_nm.x - p.x, p.x - box.upper_nm.x, 0.0}),
-               y = std::max({box.lower_nm.y - p.y, p.y - box.upper_nm.y, 0.0}),
-               t = std::hypot(x, y) / fade_nm;
-  return t >= 1 ? 0 : (1 - t * t) * (1 - t * t);
+/// Which vertices are at the rim of an open mesh.
+std::vector<bool> at_rim(const TriangleMesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
+  for (const Triangle& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) ++sides[std::minmax({t[k], t[(k + 1) % 3]})];
+  std::vector<bool> out(mesh.vertices_nm.size(), false);
+  for (const auto& [edge, count] : sides)
+    if (count == 1) out[edge.first] = out[edge.second] = true;
+  return out;
 }
 
 /// Whether a polynomial of degrees a, b, c along x, y, z changes a size along a direction, or leans
@@ -40,9 +46,9 @@ bool is_of_walls(const Vec3& direction, int a, int b, int c) {
 
 }  // namespace
 
-std::vector<MeshMode> smooth_modes(const TriangleMesh& mesh, const Box& box, double fade_nm,
-                                   SmoothKind kind) {
+std::vector<MeshMode> smooth_modes(const TriangleMesh& mesh, const Box& box, SmoothKind kind) {
   std::vector<MeshMode> modes;
+  const std::vector<bool> rim = at_rim(mesh);
   constexpr std::array<Vec3, 3> directions{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
   for (const Vec3& direction : directions)
     for (int a = 0; a <= degree; ++a)
@@ -56,9 +62,9 @@ std::vector<MeshMode> smooth_modes(const TriangleMesh& mesh, const Box& box, dou
             const Vec3 t = place_in(box, mesh.vertices_nm[v]);
             const double size = polynomials(t.x)[static_cast<std::size_t>(a)] *
                                 polynomials(t.y)[static_cast<std::size_t>(b)] *
-                                polynomials(t.z)[static_cast<std::size_t>(c)] *
-                                share(box, mesh.vertices_nm[v], fade_nm);
-            if (size != 0) mode.moves.push_back({static_cast<std::uint32_t>(v), direction * size});
+                                polynomials(t.z)[static_cast<std::size_t>(c)];
+            if (size != 0 && !rim[v])
+              mode.moves.push_back({static_cast<std::uint32_t>(v), direction * size});
           }
           modes.push_back(std::move(mode));
         }

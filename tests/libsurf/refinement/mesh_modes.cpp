@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "surf/mesh/remesh.h"
 #include "surf/mesh/shapes.h"
@@ -20,7 +22,7 @@ TriangleMesh plate(double thickness_nm) {
 
 TEST(SmoothModes, MoveNothingByMoreThanTheirAmplitude) {
   const TriangleMesh mesh = plate(60);
-  const std::vector<MeshMode> modes = smooth_modes(mesh, bounds(mesh), 50);
+  const std::vector<MeshMode> modes = smooth_modes(mesh, bounds(mesh));
   EXPECT_EQ(modes.size(), 27u);
   for (const MeshMode& mode : modes) {
     EXPECT_FALSE(mode.is_bump());
@@ -30,7 +32,7 @@ TEST(SmoothModes, MoveNothingByMoreThanTheirAmplitude) {
 
 TEST(SmoothModes, MakeATaperAndNoShift) {
   const TriangleMesh mesh = plate(60);
-  const std::vector<MeshMode> modes = smooth_modes(mesh, bounds(mesh), 50);
+  const std::vector<MeshMode> modes = smooth_modes(mesh, bounds(mesh));
   bool taper = false;
   for (const MeshMode& mode : modes) {
     // Walls at x = 40 lean outwards, those at x = -40 the other way.
@@ -46,15 +48,33 @@ TEST(SmoothModes, MakeATaperAndNoShift) {
   EXPECT_TRUE(taper);
 }
 
-TEST(SmoothModes, FadeAwayBesideTheirBox) {
+TEST(SmoothModes, MoveAlikeWhatIsBesideTheirBox) {
   const TriangleMesh mesh = plate(60);
   Box box = bounds(mesh);
-  box.lower_nm.x = box.lower_nm.y = -20, box.upper_nm.x = box.upper_nm.y = 15;
-  for (const MeshMode& mode : smooth_modes(mesh, box, 10))
+  box.lower_nm.x = -20, box.upper_nm.x = 15;
+  for (const MeshMode& mode : smooth_modes(mesh, box)) {
+    std::map<std::array<double, 2>, Vec3> beyond;
     for (const MeshMode::Move& move : mode.moves) {
       const Vec3& p = mesh.vertices_nm[move.vertex];
-      EXPECT_TRUE(p.x > -30 && p.x < 25 && p.y > -30 && p.y < 25);
+      if (p.x < 15) continue;
+      const auto [at, is_new] = beyond.try_emplace({p.y, p.z}, move.by);
+      if (!is_new) EXPECT_LT(length(at->second - move.by), 1e-12);
     }
+  }
+}
+
+TEST(SmoothModes, LeaveTheRimOfASheetWhereItIs) {
+  const TriangleMesh sheet{{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {2, 2, 1}},
+                           {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}};
+  for (const MeshMode& mode : smooth_modes(sheet, bounds(sheet)))
+    for (const MeshMode::Move& move : mode.moves) EXPECT_EQ(move.vertex, 4u);
+}
+
+TEST(SmoothModes, OfWallsAreSizesLeansAndTapers) {
+  const TriangleMesh mesh = plate(60);
+  const std::vector<MeshMode> modes = smooth_modes(mesh, bounds(mesh), SmoothKind::walls);
+  ASSERT_EQ(modes.size(), 7u);
+  EXPECT_EQ(std::ranges::count_if(modes, &MeshMode::vertical), 1);
 }
 
 TEST(BumpModes, AddUpToTheSurfaceMovingAlongItsNormals) {
@@ -87,7 +107,7 @@ TEST(BumpModes, DoNotReachThroughAThinWall) {
 
 TEST(GroupsApart, HoldEachModeOnceAndBumpsThatDoNotTouch) {
   const TriangleMesh mesh = plate(60);
-  std::vector<MeshMode> modes = smooth_modes(mesh, bounds(mesh), 50);
+  std::vector<MeshMode> modes = smooth_modes(mesh, bounds(mesh));
   const std::size_t smooth = modes.size();
   for (MeshMode& m : bump_modes(mesh, std::vector<bool>(mesh.vertices_nm.size(), true), 12))
     modes.push_back(std::move(m));

@@ -27,13 +27,13 @@ struct MeshMode {
 
 /// Displacements that are polynomials of the place, up to the second degree in each direction of
 /// space: scales, turns, shears, tapers (the angles of walls), bends; no shifts, which no image
-/// tells. Beside the box, seen from above, a place counts as the nearest one of the box, and
-/// displacements fade away over `fade_nm` (> 0). None moves a vertex by more than 1 nm per nm.
+/// tells. Beside the box a place counts as the nearest one of the box, so that what is beyond it
+/// moves alike; the rim of an open mesh stays. None moves a vertex by more than 1 nm per nm.
 enum class SmoothKind {
   walls,  ///< sizes along x, y and z; walls that lean or taper along x and y: 7 modes
   all,    ///< 27 modes
 };
-std::vector<MeshMode> smooth_modes(const TriangleMesh& mesh, const Box& box, double fade_nm,
+std::vector<MeshMode> smooth_modes(const TriangleMesh& mesh, const Box& box,
                                    SmoothKind kind = SmoothKind::all);
 
 /// Bumps along the surface's normals, `spacing_nm` (> 0) apart on it, which add up to 1 wherever
