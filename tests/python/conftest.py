@@ -15,6 +15,7 @@ PROGRAM = os.environ.get("SEMSURF", str(ROOT / "build/bin/semsurf"))
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "long: takes long; only ./check --all runs it")
+    config.addinivalue_line("markers", "hand: takes minutes; only ctest -L hand runs it")
 
 
 @pytest.fixture(autouse=True)

@@ -56,7 +56,7 @@ def test_register_and_reconstruct(tmp_path, program, scene):
     assert made.stderr.shape == made.surface.shape
 
 
-@pytest.mark.long
+@pytest.mark.hand
 @pytest.mark.filterwarnings("ignore::semsurf.Doubt")
 def test_profile(tmp_path, program):
     """A line of 60 nm, simulated, then measured."""

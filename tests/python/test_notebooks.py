@@ -30,8 +30,12 @@ def test_holds_no_traces_of_a_machine(notebook):
     assert cells_of(notebook)[0]["source"][0].startswith("# ")
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
+SHORT = ("first_image", "afm_scan")
+
+
+@pytest.mark.parametrize("notebook", [
+    pytest.param(path, id=path.stem, marks=pytest.mark.long if path.stem in SHORT else pytest.mark.hand)
+    for path in NOTEBOOKS])
 def test_runs(tmp_path, notebook):
     pytest.importorskip("nbconvert", reason="python3-nbconvert is not there")
     pytest.importorskip("ipykernel", reason="python3-ipykernel is not there")

@@ -31,18 +31,26 @@ struct Piece {
   double deviation_nm = 0;
 };
 
-double middle_y(const RefineSummary& s) {
-  Box moved;
-  for (std::size_t v = 0; v < s.mesh.vertices_nm.size(); ++v)
-    if (s.displacement_nm[v] != 0) moved.extend(s.mesh.vertices_nm[v]);
-  // Not along a row of vertices.
-  return (moved.empty() ? bounds(s.mesh) : moved).center_nm().y + 0.01;
+/// What images show, as far as beams from above would.
+Box view_of(const RefineJob& job) {
+  Box out;
+  for (const SemInput& input : job.images) {
+    const PlacedImage& image = input.image;
+    for (const int corner : {0, 1})
+      out.extend({image.x_nm(corner * (image.values.width() - 1)),
+                  image.y_nm(corner * (image.values.height() - 1)), 0});
+  }
+  return out;
 }
 
-std::vector<Piece> section_of(const RefineSummary& s) {
+double middle_y(const RefineJob& job) {
+  return view_of(job).center_nm().y + 0.01;  // not along a row of vertices
+}
+
+std::vector<Piece> section_of(const RefineJob& job, const RefineSummary& s) {
   std::vector<Piece> out;
   const TriangleTree tree(s.mesh);
-  for (const std::array<Vec3, 2>& ends : section_at_y(s.mesh, middle_y(s))) {
+  for (const std::array<Vec3, 2>& ends : section_at_y(s.mesh, middle_y(job))) {
     const Vec3 middle = (ends[0] + ends[1]) * 0.5;
     const Triangle& t = s.mesh.triangles[tree.closest(middle).triangle];
     double sum = 0;
@@ -176,12 +184,13 @@ void add_runs(io::PlotPanel& panel, const std::vector<std::array<Vec3, 2>>& piec
   }
 }
 
-io::PlotPanel section_panel(const RefineSummary& s, const std::vector<Piece>& section) {
+io::PlotPanel section_panel(const RefineJob& job, const RefineSummary& s,
+                            const std::vector<Piece>& section) {
   io::PlotPanel panel;
   panel.title = "section across the middle";
   panel.x.label = "x (nm)";
   panel.y.label = "z (nm)";
-  const double y = middle_y(s);
+  const double y = middle_y(job);
   std::vector<std::array<Vec3, 2>> after, out, in;
   for (const Piece& p : section) {
     after.push_back(p.ends);
@@ -203,13 +212,14 @@ io::PlotPanel section_panel(const RefineSummary& s, const std::vector<Piece>& se
       panel.series.push_back(std::move(line));
     }
   add_runs(panel, after, "refined", 0, false);
-  Box box;
-  for (std::size_t v = 0; v < s.mesh.vertices_nm.size(); ++v)
-    if (s.displacement_nm[v] != 0) box.extend(s.mesh.vertices_nm[v]);
-  if (!box.empty()) {
-    panel.x.range = {box.lower_nm.x, box.upper_nm.x};
-    const double beside = 0.1 * (box.upper_nm.z - box.lower_nm.z) + 1;
-    panel.y.range = {box.lower_nm.z - beside, box.upper_nm.z + beside};
+  const Box view = view_of(job);
+  panel.x.range = {view.lower_nm.x, view.upper_nm.x};
+  Box shown;
+  for (const Vec3& p : s.mesh.vertices_nm)
+    if (p.x >= view.lower_nm.x && p.x <= view.upper_nm.x) shown.extend(p);
+  if (!shown.empty()) {
+    const double beside = 0.1 * (shown.upper_nm.z - shown.lower_nm.z) + 1;
+    panel.y.range = {shown.lower_nm.z - beside, shown.upper_nm.z + beside};
   }
   return panel;
 }
@@ -236,12 +246,13 @@ std::vector<std::filesystem::path> write_refined(const RefineJob& job, const Ref
   const SurfaceScene scene = surface_scene(s, made);
   io::write_surfaces(path("surface.vtp"), scene);
   io::write_surfaces(path("surface.stl"), scene);
-  const std::vector<Piece> section = section_of(s);
+  const std::vector<Piece> section = section_of(job, s);
   io::write_text(path("section.csv"), section_csv(section));
   for (std::size_t v = 0; v < s.images.size(); ++v)
     io::write_image(path(fmt::format("view{}.vti", v + 1)), view_image(job, s.images[v], v, made));
   if (job.picture) {
     io::Plot plot;
+    const bool with_bumps = std::ranges::any_of(s.modes, &MeshMode::is_bump);
     for (std::size_t v = 0; v < s.images.size(); ++v) {
       const RefinedImage& view = s.images[v];
       const PlacedImage& measured = job.images[v].image;
@@ -253,13 +264,13 @@ std::vector<std::filesystem::path> write_refined(const RefineJob& job, const Ref
       plot.panels.back().image->range = plot.panels[plot.panels.size() - 2].image->range;
       plot.panels.push_back(picture("what is left", measured, view.residual,
                                     io::PlotColors::difference, "deviations"));
-      plot.panels.push_back(picture("what this image tells of the surface", measured,
-                                    view.sensitivity_per_nm, io::PlotColors::heights,
-                                    "1 / standard error (1/nm)"));
+      if (with_bumps)
+        plot.panels.push_back(picture("what it tells", measured, view.sensitivity_per_nm,
+                                      io::PlotColors::heights, "1 / error (1/nm)"));
     }
-    plot.panels.push_back(section_panel(s, section));
-    plot.panels.back().columns = 4;
-    plot.columns = 4;
+    plot.panels.push_back(section_panel(job, s, section));
+    plot.columns = with_bumps ? 4 : 3;
+    plot.panels.back().columns = plot.columns;
     plot.width_px = 2400;
     plot.metadata = made;
     io::write_plot(path("panel.png"), plot);
