@@ -37,8 +37,8 @@ Box view_of(const RefineJob& job) {
   for (const SemInput& input : job.images) {
     const PlacedImage& image = input.image;
     for (const int corner : {0, 1})
-      out.extend({image.x_nm(corner * (image.values.width() - 1)),
-                  image.y_nm(corner * (image.values.height() - 1)), 0});
+      out.extend(Vec3{image.x_nm(corner * (image.values.width() - 1)),
+                      image.y_nm(corner * (image.values.height() - 1)), 0});
   }
   return out;
 }

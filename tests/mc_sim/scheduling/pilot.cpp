@@ -70,7 +70,7 @@ TEST(Pilot, ForetellsFromAPart) {
 TEST(Pilot, IsNotMisledByRows) {
   SimulationOptions options = options_of(Method::direct, 100);
   options.tile_pixels = 10;
-  expect_foretold(scene_of(40), options, 0.4, 0.15);
+  expect_foretold(scene_of(40), options, 1, 0.15);
 }
 
 TEST(Pilot, ForetellsReplay) {
