@@ -107,21 +107,6 @@ TEST_F(RefineJobTest, FindsWallsThatLean) {
     EXPECT_TRUE(std::filesystem::exists(job_.folder / file)) << file;
 }
 
-TEST_F(RefineJobTest, BumpsTellWhatEachImageKnowsOfEachPlace) {
-  job_.smooth_rounds = 1, job_.bump_rounds = 1;
-  job_.folder.clear();
-  const RefineSummary s = run(job_);
-  ASSERT_EQ(s.sensitivity.size(), 2u);
-  // A beam that travels to +x sees walls that face -x: the left one.
-  double left = 0, right = 0;
-  for (std::size_t v = 0; v < s.mesh.vertices_nm.size(); ++v) {
-    const Vec3& p = s.mesh.vertices_nm[v];
-    if (std::abs(p.y) > 6 || p.z < 4 || p.z > height_nm - 4) continue;
-    (p.x < 0 ? left : right) += s.sensitivity[0][v];
-  }
-  EXPECT_GT(left, 2 * right);
-}
-
 TEST_F(RefineJobTest, RefusesImagesOfSomethingElse) {
   job_.folder.clear();
   for (double& v : job_.images[1].image.values.data()) v = 0;

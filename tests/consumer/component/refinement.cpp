@@ -5,7 +5,7 @@
 int main(int count, char**) {
   if (count > 100) {  // linked, not run
     surf::fit_modes({}, {}, {}, {});
-    surf::smooth_modes({}, {}, 1);
+    surf::smooth_modes({}, {});
   }
   return surf::groups_apart({}, 1).empty() ? 0 : 1;
 }
