@@ -245,6 +245,7 @@ void measure(const Case& c, const std::string& folder, std::uint64_t seed, bool 
   job.tilts_deg = {c.tilt_deg};
   job.azimuths_deg = {0, 180};
   job.height_error_nm = 4;
+  job.electrons = 600, job.effect_electrons = 50, job.smooth_rounds = 4;
   if (c.line_height_nm > 0) job.bump_rounds = 0;  // a line has no other shape
   job.cache = io::cache_folder("");
   for (const double azimuth : job.azimuths_deg) {
