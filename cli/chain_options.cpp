@@ -110,18 +110,12 @@ void take_afm(const ChainOptions& o, const ChainFiles& files, workflow::AfmInput
 }
 
 void take_sem(const ChainOptions& o, const std::string& file, workflow::SemInput& sem) {
-  const workflow::FileChannel name = workflow::parse_file_channel(file);
-  if (!name.channel.empty()) sem.reading.channel = name.channel;
-  sem.image = read_sem_input(name.file, sem.reading, o.quiet);
-  sem.file = name.file;
+  sem = read_sem_channel(file, sem.reading, o.quiet);
 }
 
 void take_model(const ChainOptions& o, const ChainFiles& files, int threads,
                 workflow::ModelRequest& model) {
-  std::vector<std::string> notes;
-  if (!files.material.name.empty()) model.material = io::find_material(files.material, notes);
-  if (!o.quiet)
-    for (const std::string& note : notes) print_note(note);
+  if (!files.material.name.empty()) model.material = read_material(files.material, o.quiet);
   if (model.file.empty() && files.material.name.empty())
     throw UsageError("`specimen.material`", "it is missing, and so is `reconstruction.model`",
                      "Say what the specimen is made of, as `specimen.material=Si`");

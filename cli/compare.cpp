@@ -70,10 +70,7 @@ void take_image(const Options& o, const io::MaterialChoice& material, workflow::
   if (job.model.file.empty() && !o.bound.is_given("beam.energy"))
     throw UsageError("`beam.energy`", "it is missing",
                      "Say what the SEM image was taken with, as `beam.energy=1keV`");
-  std::vector<std::string> notes;
-  job.model.material = io::find_material(material, notes);
-  if (!o.quiet)
-    for (const std::string& note : notes) print_note(note);
+  job.model.material = read_material(material, o.quiet);
 }
 
 workflow::CompareJob make_job(const Options& o) {

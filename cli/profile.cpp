@@ -65,25 +65,14 @@ workflow::ProfileJob make_job(const Options& o) {
   o.bound.apply(material), o.bound.apply(files), o.bound.apply(job);
   if (o.image.empty()) throw UsageError("IMAGE", "no image is given", "Name an SEM image");
   if (job.folder.empty()) throw UsageError("`output`", "no folder is given", "Add `output=result`");
-  if (!material.name.empty()) {
-    std::vector<std::string> notes;
-    job.material = io::find_material(material, notes);
-    if (!o.quiet)
-      for (const std::string& note : notes) print_note(note);
-  }
+  if (!material.name.empty()) job.material = read_material(material, o.quiet);
   if (!o.bound.is_given("beam.energy"))
     throw UsageError("`beam.energy`", "it is missing",
                      "Say what the image was taken with, as `beam.energy=1keV`");
   job.sem.image = read_sem_input(o.image, job.sem.reading, o.quiet);
   job.sem.file = o.image;
-  for (const std::string& view : files.views) {
-    const workflow::FileChannel name = workflow::parse_file_channel(view);
-    job.views.emplace_back();
-    job.views.back().reading = job.sem.reading;
-    if (!name.channel.empty()) job.views.back().reading.channel = name.channel;
-    job.views.back().image = read_sem_input(name.file, job.views.back().reading, o.quiet);
-    job.views.back().file = name.file;
-  }
+  for (const std::string& view : files.views)
+    job.views.push_back(read_sem_channel(view, job.sem.reading, o.quiet));
   if (!files.afm.empty()) {
     job.scan = io::read_height_field(files.afm).field;
     job.scan_file = files.afm;

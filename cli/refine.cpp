@@ -15,9 +15,6 @@
 #include "surf/io/cache.h"
 #include "surf/io/sim/materials.h"
 #include "surf/io/sim/specimen_request.h"
-#include "surf/mesh/height_field_mesh.h"
-#include "surf/workflow/compare_job.h"
-#include "surf/workflow/picture_input.h"
 #include "surf/workflow/refine_job.h"
 #include "terminal.h"
 
@@ -53,16 +50,6 @@ struct Options {
   bool quiet = false;
 };
 
-/// A mesh, or heights as the sheet that they are.
-TriangleMesh read_start(const std::string& file, const io::MeshUnit& unit, bool quiet) {
-  std::vector<std::string> notes;
-  workflow::ComparedSurface surface = workflow::read_compared_surface(file, {}, unit, notes);
-  if (!quiet)
-    for (const std::string& note : notes) print_note(note);
-  if (auto* mesh = std::get_if<TriangleMesh>(&surface)) return std::move(*mesh);
-  return height_field_sheet(std::get<workflow::MeasuredSurface>(surface).field);
-}
-
 workflow::RefineJob make_job(const Options& o) {
   workflow::RefineJob job;
   io::MaterialChoice material;
@@ -72,25 +59,19 @@ workflow::RefineJob make_job(const Options& o) {
   o.bound.apply(material), o.bound.apply(meshes), o.bound.apply(files), o.bound.apply(job);
   if (o.start.empty()) throw UsageError("START", "no mesh is given", "Name one to begin with");
   if (job.folder.empty()) throw UsageError("`output`", "no folder is given", "Add `output=result`");
-  if (!material.name.empty()) {
-    std::vector<std::string> notes;
-    job.material = io::find_material(material, notes);
-    if (!o.quiet)
-      for (const std::string& note : notes) print_note(note);
-  }
+  if (!material.name.empty()) job.material = read_material(material, o.quiet);
   if (!o.bound.is_given("beam.energy"))
     throw UsageError("`beam.energy`", "it is missing",
                      "Say what the images were taken with, as `beam.energy=1keV`");
-  job.start = read_start(o.start, mesh_unit_of(meshes), o.quiet);
+  std::vector<std::string> notes;
+  job.start = workflow::read_refined_start(o.start, mesh_unit_of(meshes), notes);
+  if (!o.quiet)
+    for (const std::string& note : notes) print_note(note);
   job.start_file = o.start;
   const io::SemReadOptions reading = job.images.front().reading;
   job.images.clear();
-  for (const std::string& image : files.images) {
-    const workflow::FileChannel name = workflow::parse_file_channel(image);
-    job.images.push_back({{}, name.file, reading});
-    if (!name.channel.empty()) job.images.back().reading.channel = name.channel;
-    job.images.back().image = read_sem_input(name.file, job.images.back().reading, o.quiet);
-  }
+  for (const std::string& image : files.images)
+    job.images.push_back(read_sem_channel(image, reading, o.quiet));
   return job;
 }
 

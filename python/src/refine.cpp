@@ -6,7 +6,6 @@
 #include "surf/io/cache.h"
 #include "surf/io/sim/specimen_request.h"
 #include "surf/mesh/height_field_mesh.h"
-#include "surf/workflow/compare_job.h"
 #include "surf/workflow/refine_job.h"
 
 namespace surf::python {
@@ -22,10 +21,9 @@ TriangleMesh start_of(const Call& call, std::filesystem::path& file) {
   }
   file = path_of(given);
   std::vector<std::string> notes;
-  workflow::ComparedSurface surface = workflow::read_compared_surface(file, {}, unit, notes);
+  TriangleMesh mesh = workflow::read_refined_start(file, unit, notes);
   Call::notes(notes);
-  if (auto* mesh = std::get_if<TriangleMesh>(&surface)) return std::move(*mesh);
-  return height_field_sheet(std::get<workflow::MeasuredSurface>(surface).field);
+  return mesh;
 }
 
 workflow::RefineJob job_of(const Call& call) {

@@ -192,6 +192,7 @@ semsurf_cli_usage(refine_no_image "--sem: no image is given" refine cube.off --m
 semsurf_cli_usage(refine_energy "--energy: it is missing" refine cube.off --sem fei.tif --material Si -o refined)
 semsurf_cli_usage(refine_material "--material: it is missing" refine cube.off --sem steps_of_grey.tif --pixel-size 1nm --energy 1keV -o refined)
 semsurf_cli_usage(refine_tilts "2 values are given for 1 images" refine cube.off --sem steps_of_grey.tif --pixel-size 1nm --tilt 1deg --tilt 2deg --material Si --energy 1keV -o refined)
+semsurf_cli_unusable(refine_open "open.off: the mesh is open" refine open.off --sem steps_of_grey.tif --pixel-size 1nm --material Si --energy 1keV --no-picture -o refined)
 semsurf_cli_unusable(refine_no_file "nowhere.off" refine nowhere.off --sem steps_of_grey.tif --pixel-size 1nm --material Si --energy 1keV -o refined)
 semsurf_cli_unusable(refine_other_specimen "does not show this specimen" refine cube.off --sem steps_of_grey.tif --pixel-size 1nm --material Si --energy 1keV --no-picture -o refined)
 semsurf_cli_usage(compare_nothing "BEFORE: no file is given" compare -o change)

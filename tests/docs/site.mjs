@@ -7,16 +7,11 @@
 import assert from 'node:assert/strict';
 import { createReadStream, existsSync, mkdirSync, statSync } from 'node:fs';
 import { createServer } from 'node:http';
-import { createRequire } from 'node:module';
-import { extname, join, normalize, resolve } from 'node:path';
+import { extname, join, normalize } from 'node:path';
+import { find_browser } from '../web/puppeteer.mjs';
 
 const [packages, site, pictures] = process.argv.slice(2);
-const skip = (reason) => { console.log(`skipped: ${reason}`); process.exit(77); };
-const browser_path = [process.env.CHROMIUM, '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome']
-  .find((path) => path && existsSync(path));
-if (!browser_path) skip('no Chromium (apt-get install chromium)');
-if (!existsSync(join(packages, 'node_modules', 'puppeteer-core'))) skip('no puppeteer-core (npm could not fetch it)');
-const puppeteer = createRequire(resolve(packages, 'node_modules', 'x.js'))('puppeteer-core');
+const { browser_path, puppeteer } = find_browser(packages);
 
 const types = { '.html': 'text/html', '.css': 'text/css', '.js': 'text/javascript', '.json': 'application/json', '.svg': 'image/svg+xml',
   '.png': 'image/png' };

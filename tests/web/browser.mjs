@@ -4,20 +4,15 @@
 // PACKAGES holds node_modules; pictures of what was seen go to the folder PICTURES. Exits with 77 where no
 // browser is installed.
 import assert from 'node:assert/strict';
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { execFileSync } from 'node:child_process';
 import { tmpdir } from 'node:os';
-import { join, resolve } from 'node:path';
+import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
+import { find_browser } from './puppeteer.mjs';
 
 const [packages, semsurf, pictures] = process.argv.slice(2);
-const skip = (reason) => { console.log(`skipped: ${reason}`); process.exit(77); };
-const browser_path = [process.env.CHROMIUM, '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome']
-  .find((path) => path && existsSync(path));
-if (!browser_path) skip('no Chromium (apt-get install chromium)');
-if (!existsSync(join(packages, 'node_modules', 'puppeteer-core'))) skip('no puppeteer-core (npm could not fetch it)');
-const puppeteer = createRequire(resolve(packages, 'node_modules', 'x.js'))('puppeteer-core');
+const { browser_path, puppeteer } = find_browser(packages);
 
 // What is shown, as formulas: a slope with a bump, and the same 3 nm higher without it.
 const size = 96, pitch = 2;

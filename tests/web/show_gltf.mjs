@@ -5,17 +5,12 @@
 // the box, that the camera sees all corners of the surfaces, and that pixels are lit. PICTURES: a folder for
 // what was seen.
 import { createServer } from 'node:http';
-import { existsSync, mkdirSync, readFileSync, readdirSync } from 'node:fs';
-import { createRequire } from 'node:module';
+import { mkdirSync, readFileSync, readdirSync } from 'node:fs';
 import { join, normalize, resolve } from 'node:path';
+import { find_browser } from './puppeteer.mjs';
 
 const [packages, folder, pictures] = process.argv.slice(2);
-const skip = (missing) => { console.log(`skipped: no ${missing} (./check --all installs it)`); process.exit(77); };
-const chromium = [process.env.CHROMIUM, '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome']
-  .find((path) => path && existsSync(path));
-if (!chromium) skip('Chromium');
-for (const name of ['puppeteer-core', 'three']) if (!existsSync(join(packages, 'node_modules', name))) skip(name);
-const puppeteer = createRequire(resolve(packages, 'node_modules', 'x.js'))('puppeteer-core');
+const { browser_path, puppeteer } = find_browser(packages, 'three');
 
 const page = `<!DOCTYPE html><meta charset="utf-8"><body style="margin:0;background:#000">
 <script type="importmap">{"imports": {"three": "/three/build/three.module.js", "three/": "/three/"}}</script>
@@ -108,7 +103,7 @@ function faults(seen, expected) {
 
 const server = await serve();
 const browser = await puppeteer.launch({
-  executablePath: chromium,
+  executablePath: browser_path,
   args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
 });
 let good = true;

@@ -382,11 +382,7 @@ void describe(ParameterVisitor& visit, ReconstructJob& job) {
     if (visit.reads()) job.afm->preparation.seed = job.options.seed;
   }
   describe_folder(visit, job.folder, "Folder for all results; it is made");
-  bool no_picture = !job.picture;
-  visit(no_picture, {.name = "output.no_picture",
-                     .help = "Leave out panel.png, which needs Python with Matplotlib",
-                     .recorded = false});
-  job.picture = !no_picture;
+  describe_picture(visit, job.picture);
   describe_threads(visit, job.options.threads);
 }
 

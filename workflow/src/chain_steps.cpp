@@ -12,6 +12,7 @@
 #include "surf/afm/resample.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
+#include "surf/io/plot.h"
 
 namespace surf::workflow {
 namespace {
@@ -23,6 +24,14 @@ constexpr double square = 1e-3;  // relative; models demand the same of fields
 void begin(const Reporter& reporter, const char* stage) {
   if (reporter.cancelled()) throw Interrupted();
   reporter.stage(stage);
+}
+
+void check_results(const std::filesystem::path& folder, bool picture) {
+  std::error_code ignored;
+  if (std::filesystem::exists(folder, ignored) && !std::filesystem::is_directory(folder, ignored))
+    throw UsageError("`output`", fmt::format("{} is no folder", folder.string()),
+                     "Name a folder for all results, as `output=result`");
+  if (picture && !folder.empty()) io::check_plot_target(folder / "panel.png");
 }
 
 void warn_of_tip(const PreparedAfm& prepared, const Reporter& reporter) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <filesystem>
+
 #include "surf/workflow/register_job.h"
 
 namespace surf::workflow {
@@ -8,6 +10,10 @@ namespace surf::workflow {
 // Steps shared by registration and reconstruction. Each is a stage of the reporter.
 
 void begin(const Reporter& reporter, const char* stage);
+
+/// Throws UsageError where results cannot be written: `folder` is a file, or the picture is wanted
+/// and cannot be drawn. An empty folder: nothing is written.
+void check_results(const std::filesystem::path& folder, bool picture);
 
 /// Prepares the scan and passes its notes and warnings on, those of the tip only if no other step
 /// is to find one.

@@ -8,6 +8,7 @@
 #include "surf/core/units.h"
 #include "surf/core/words.h"
 #include "surf/io/cache.h"
+#include "surf/mc/request/simulation_request.h"
 #include "surf/mc/simulate.h"
 
 namespace surf::workflow {
@@ -111,6 +112,30 @@ void describe_point(ParameterVisitor& visit, std::optional<std::pair<double, dou
           throw UsageError(subject, "it is not a point", "Write two lengths, X,Y");
         point_nm = {parse_length_nm(parts[0], subject), parse_length_nm(parts[1], subject)};
       });
+}
+
+void describe_picture(ParameterVisitor& visit, bool& picture) {
+  bool no_picture = !picture;
+  visit(no_picture, {.name = "output.no_picture",
+                     .help = "Leave out panel.png, which needs Python with Matplotlib",
+                     .recorded = false});
+  picture = !no_picture;
+}
+
+void describe_beam(ParameterVisitor& visit, double& energy_ev, double& spot_nm,
+                   mc::Physics& physics) {
+  mc::SimulationRequest request;
+  request.beam.energy_ev = energy_ev;
+  request.beam.spot_nm = spot_nm;
+  request.physics = physics;
+  describe_some(visit, request,
+                {{.name = "beam.energy", .otherwise = "must be said"},
+                 {"beam.spot"},
+                 {"simulation.physics"}});
+  if (!visit.reads()) return;
+  energy_ev = request.beam.energy_ev;
+  spot_nm = request.beam.spot_nm;
+  physics = request.physics;
 }
 
 }  // namespace surf::workflow

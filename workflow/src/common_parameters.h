@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "surf/core/parameters.h"
+#include "surf/mc/physics/physics.h"
 
 // Parameters shared by several jobs.
 namespace surf::workflow {
@@ -33,6 +34,13 @@ void describe_numbers(ParameterVisitor& visit, std::vector<double>& values, cons
 /// Names separated by commas: "NAME,NAME".
 void describe_names(ParameterVisitor& visit, std::vector<std::string>& names,
                     const Parameter& about);
+
+/// The parameter output.no_picture.
+void describe_picture(ParameterVisitor& visit, bool& picture);
+
+/// Energy, spot and physics of simulations that are compared with images.
+void describe_beam(ParameterVisitor& visit, double& energy_ev, double& spot_nm,
+                   mc::Physics& physics);
 
 /// The parameter job.cache, a folder or "off".
 void describe_cache(ParameterVisitor& visit, std::filesystem::path& cache);

@@ -76,18 +76,13 @@ void check(const ProfileJob& job) {
       std::ranges::any_of(views, &ProfileView::one_sided))
     throw UsageError("`profile.kind`", "holes are measured from above, by all of SE or BSE",
                      "Leave out tilts and one-sided signals");
-  std::error_code ignored;
-  if (std::filesystem::exists(job.folder, ignored) &&
-      !std::filesystem::is_directory(job.folder, ignored))
-    throw UsageError("`output`", fmt::format("{} is no folder", job.folder.string()),
-                     "Name a folder for all results, as `output=result`");
+  check_results(job.folder, job.picture);
   for (std::size_t k = 0; k <= job.views.size(); ++k) {
     const PlacedImage& image = k == 0 ? job.sem.image : job.views[k - 1].image;
     validate(image, "SEM image");
     if (std::abs(image.pitch_x_nm / image.pitch_y_nm - 1) > 1e-3)
       throw InvalidInput("SEM image", "its pixels are not square", "Resample it");
   }
-  if (job.picture && !job.folder.empty()) io::check_plot_target(job.folder / "panel.png");
 }
 
 PlacedImage transposed(const PlacedImage& image) {

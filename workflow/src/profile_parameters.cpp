@@ -3,30 +3,9 @@
 
 #include "common_parameters.h"
 #include "surf/core/some_parameters.h"
-#include "surf/mc/request/simulation_request.h"
 #include "surf/workflow/profile_job.h"
 
 namespace surf::workflow {
-namespace {
-
-/// Beam and physics, in the form of a simulation request.
-void describe_beam(ParameterVisitor& visit, ProfileJob& job) {
-  mc::SimulationRequest request;
-  request.beam.energy_ev = job.energy_ev;
-  request.beam.spot_nm = job.spot_nm;
-  request.physics = job.physics;
-  describe_some(visit, request,
-                {{.name = "beam.energy", .otherwise = "must be said"},
-                 {"beam.spot"},
-                 {"simulation.physics"}});
-  if (!visit.reads()) return;
-  job.energy_ev = request.beam.energy_ev;
-  job.spot_nm = request.beam.spot_nm;
-  job.physics = request.physics;
-}
-
-}  // namespace
-
 void describe(ParameterVisitor& visit, ProfileJob& job) {
   describe(visit, job.sem);
   visit(job.kind, {"line", "trench", "edge", "hole"},
@@ -72,7 +51,7 @@ void describe(ParameterVisitor& visit, ProfileJob& job) {
                         .help = "Threshold of the threshold method, a share of the way from the "
                                 "ground's level to the rim's",
                         .limits = within(0.05, 0.95)});
-  describe_beam(visit, job);
+  describe_beam(visit, job.energy_ev, job.spot_nm, job.physics);
   visit(job.signal,
         {.name = "profile.signal",
          .help = "What the image shows: SE, BSE, a quadrant BSE-right, BSE-top, BSE-left, "
@@ -98,11 +77,7 @@ void describe(ParameterVisitor& visit, ProfileJob& job) {
   visit(job.seed, {.name = "profile.seed", .help = "Seed of the simulations"});
   describe_cache(visit, job.cache);
   describe_threads(visit, job.threads);
-  bool no_picture = !job.picture;
-  visit(no_picture, {.name = "output.no_picture",
-                     .help = "Leave out panel.png, which needs Python with Matplotlib",
-                     .recorded = false});
-  job.picture = !no_picture;
+  describe_picture(visit, job.picture);
   describe_folder(visit, job.folder, "Folder for results, created if it is missing");
 }
 

@@ -124,11 +124,7 @@ void check(const ReconstructJob& job) {
   if (!job.afm && !job.sem)
     throw UsageError("reconstruct", "neither a scan nor an SEM image is given",
                      "Add `reconstruction.afm=scan.gwy`, `reconstruction.sem=image.tif`, or both");
-  std::error_code ignored;
-  if (std::filesystem::exists(job.folder, ignored) &&
-      !std::filesystem::is_directory(job.folder, ignored))
-    throw UsageError("`output`", fmt::format("{} is no folder", job.folder.string()),
-                     "Name a folder for all results, as `output=result`");
+  check_results(job.folder, job.picture);
   if (!job.afm && !job.calibration)
     throw UsageError(
         "`reconstruction.gains`", "without a scan there is nothing to calibrate with",
@@ -143,7 +139,6 @@ void check(const ReconstructJob& job) {
   check_views(job);
   check_parameters(parameters_of(job));
   if (job.sem) validate(job.sem->image, "SEM image");
-  if (job.picture && !job.folder.empty()) io::check_plot_target(job.folder / "panel.png");
 }
 
 std::string seen(const ResidualReport& r) {

@@ -80,7 +80,7 @@ mc::Scan RefineImages::scan(std::size_t view, const RefinedViewState& state) con
 mc::Specimen RefineImages::specimen(const TriangleMesh& mesh) const {
   mc::Specimen out;
   out.materials = {job_.material};
-  out.bodies.push_back({"mesh", mesh, 0});
+  out.bodies.push_back({job_.start_file.empty() ? "mesh" : job_.start_file.string(), mesh, 0});
   if (job_.substrate_z_nm) out.substrate = mc::Substrate{0, *job_.substrate_z_nm};
   return out;
 }

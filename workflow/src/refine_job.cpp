@@ -10,11 +10,12 @@
 
 #include "chain_steps.h"
 #include "job_libraries.h"
+#include "refine_agreement.h"
 #include "refine_images.h"
 #include "refine_output.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
-#include "surf/io/plot.h"
+#include "surf/mesh/height_field_mesh.h"
 #include "surf/mesh/open_sheet.h"
 #include "surf/mesh/remesh.h"
 #include "surf/mesh/self_intersections.h"
@@ -22,8 +23,7 @@
 #include "surf/mesh/vertex_normals.h"
 #include "surf/reconstruction/view.h"
 #include "surf/registration/find_shift.h"
-#include "surf/sem/estimate_sem_noise.h"
-#include "surf/sem/noise_of_residuals.h"
+#include "surf/workflow/compare_job.h"
 #include "surf/workflow/signal_detectors.h"
 #include "surf/workflow/view_settings.h"
 
@@ -79,60 +79,13 @@ void check(const RefineJob& job) {
                          "it has more than 512 x 512 pixels: every change is simulated in it",
                          "Cut out the feature, or take larger pixels");
   }
-  std::error_code ignored;
-  if (std::filesystem::exists(job.folder, ignored) &&
-      !std::filesystem::is_directory(job.folder, ignored))
-    throw UsageError("`output`", fmt::format("{} is no folder", job.folder.string()),
-                     "Name a folder for all results, as `output=result`");
-  if (job.picture && !job.folder.empty()) io::check_plot_target(job.folder / "panel.png");
-}
-
-/// Noise of an image by its flat places; nothing where it has too few.
-std::optional<SemNoise> noise_of_flats(const PlacedImage& image) {
-  try {
-    return estimate_sem_noise(image).noise;
-  } catch (const InvalidInput&) {
-    return std::nullopt;
-  }
-}
-
-/// Noise by what a simulated image leaves, its own chance included.
-SemNoise noise_of_rest(const PlacedImage& image, const Grid<double>& simulated,
-                       const RefinedViewState& s) {
-  Grid<double> mean = simulated;
-  for (double& v : mean.data()) v = s.gain * v + s.offset;
-  return noise_of_residuals(image.values, mean, image.valid);
+  check_results(job.folder, job.picture);
 }
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
-}
-
-double correlation(const RefinedView& v) {
-  double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
-  for (std::size_t p = 0; p < v.measured.size(); ++p) {
-    if (!v.used.includes(p)) continue;
-    const double x = v.measured.data()[p], y = v.simulated.data()[p];
-    ++n, a += x, b += y, aa += x * x, bb += y * y, ab += x * y;
-  }
-  const double va = aa - a * a / n, vb = bb - b * b / n;
-  return va > 0 && vb > 0 ? (ab - a * b / n) / std::sqrt(va * vb) : 0;
-}
-
-/// Rms of what gain and offset leave, less what noise makes of it, over the signal's deviation.
-double unexplained_share(const RefinedView& v, const RefinedViewState& s, const SemNoise& noise) {
-  double n = 0, left = 0, sum = 0, squares = 0, chance = 0;
-  for (std::size_t p = 0; p < v.measured.size(); ++p) {
-    if (!v.used.includes(p)) continue;
-    const double mean = s.gain * v.simulated.data()[p] + s.offset,
-                 off = v.measured.data()[p] - mean;
-    ++n, left += off * off, chance += noise.variance(mean);
-    sum += mean, squares += mean * mean;
-  }
-  const double contrast = squares / n - sum * sum / (n * n);
-  return contrast > 0 ? std::sqrt(std::max(0.0, (left - chance) / n) / contrast) : 1;
 }
 
 class Refinement {
@@ -501,6 +454,13 @@ class Refinement {
 };
 
 }  // namespace
+
+TriangleMesh read_refined_start(const std::filesystem::path& file, const io::MeshUnit& unit,
+                                std::vector<std::string>& notes) {
+  ComparedSurface surface = read_compared_surface(file, {}, unit, notes);
+  if (auto* mesh = std::get_if<TriangleMesh>(&surface)) return std::move(*mesh);
+  return height_field_sheet(std::get<MeasuredSurface>(surface).field);
+}
 
 RefineSummary run(const RefineJob& job, const Reporter& reporter) {
   check(job);

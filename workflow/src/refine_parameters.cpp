@@ -1,29 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common_parameters.h"
 #include "surf/core/some_parameters.h"
-#include "surf/mc/request/simulation_request.h"
 #include "surf/reconstruction/view.h"
 #include "surf/workflow/refine_job.h"
 #include "surf/workflow/view_settings.h"
 
 namespace surf::workflow {
 namespace {
-
-/// Beam and physics, in the form of a simulation request.
-void describe_beam(ParameterVisitor& visit, RefineJob& job) {
-  mc::SimulationRequest request;
-  request.beam.energy_ev = job.energy_ev;
-  request.beam.spot_nm = job.spot_nm;
-  request.physics = job.physics;
-  describe_some(visit, request,
-                {{.name = "beam.energy", .otherwise = "must be said"},
-                 {"beam.spot"},
-                 {"simulation.physics"}});
-  if (!visit.reads()) return;
-  job.energy_ev = request.beam.energy_ev;
-  job.spot_nm = request.beam.spot_nm;
-  job.physics = request.physics;
-}
 
 /// A length that is chosen where it is not said.
 void describe_chosen(ParameterVisitor& visit, double& length_nm, Parameter about) {
@@ -39,7 +22,7 @@ void describe_chosen(ParameterVisitor& visit, double& length_nm, Parameter about
 void describe(ParameterVisitor& visit, RefineJob& job) {
   if (job.images.empty()) job.images.resize(1);
   describe(visit, job.images.front());
-  describe_beam(visit, job);
+  describe_beam(visit, job.energy_ev, job.spot_nm, job.physics);
   ViewSettings views{job.tilts_deg, job.azimuths_deg, {}, job.signals, job.tilt_error_deg};
   describe_some(
       visit, views,
@@ -109,11 +92,7 @@ void describe(ParameterVisitor& visit, RefineJob& job) {
   visit(job.seed, {.name = "refinement.seed", .help = "Seed of the simulations"});
   describe_cache(visit, job.cache);
   describe_threads(visit, job.threads);
-  bool no_picture = !job.picture;
-  visit(no_picture, {.name = "output.no_picture",
-                     .help = "Leave out panel.png, which needs Python with Matplotlib",
-                     .recorded = false});
-  job.picture = !no_picture;
+  describe_picture(visit, job.picture);
   describe_folder(visit, job.folder, "Folder for results, created if it is missing");
 }
 

@@ -176,12 +176,17 @@ TEST(Misfit, IsLeastAtTheFit) {
   state.shift_x_nm = state.shift_y_nm = 0;
   const double least = at(fit.amplitudes_nm, state);
   EXPECT_LT(least, at(nothing, start[0]));
-  for (std::size_t k = 0; k < modes; ++k)
+  for (std::size_t k = 0; k < modes; ++k) {
+    double rise = 0;
     for (const double by : {-1.0, 1.0}) {
       std::vector<double> other = fit.amplitudes_nm;
       other[k] += by;
       EXPECT_LT(least, at(other, state)) << k;
+      rise += at(other, state) - least;
     }
+    // By what is told of the amplitude, and by its prior of 2 nm.
+    EXPECT_NEAR(rise / (2 * (fit.information[0][k] + 0.25)), 1, 0.05);
+  }
 }
 
 TEST(FitModes, ChanceInEffectsIsNoInformation) {

@@ -25,12 +25,7 @@ constexpr double told_spread = 1.1;
 
 void check(const CompareJob& job) {
   check_parameters(job.parameters);
-  std::error_code ignored;
-  if (std::filesystem::exists(job.folder, ignored) &&
-      !std::filesystem::is_directory(job.folder, ignored))
-    throw UsageError("`output`", fmt::format("{} is no folder", job.folder.string()),
-                     "Name a folder for all results, as `output=result`");
-  if (job.picture && !job.folder.empty()) io::check_plot_target(job.folder / "panel.png");
+  check_results(job.folder, job.picture);
   if (std::holds_alternative<TriangleMesh>(job.before) &&
       !std::holds_alternative<MeasuredSurface>(job.after))
     throw UsageError(job.before_file.string(),

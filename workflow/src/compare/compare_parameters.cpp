@@ -59,11 +59,7 @@ void describe(ParameterVisitor& visit, CompareJob& job) {
   describe(visit, job.parameters);
   describe(visit, job.model);
   describe_threads(visit, job.threads);
-  bool no_picture = !job.picture;
-  visit(no_picture, {.name = "output.no_picture",
-                     .help = "Leave out panel.png, which needs Python with Matplotlib",
-                     .recorded = false});
-  job.picture = !no_picture;
+  describe_picture(visit, job.picture);
   describe_folder(visit, job.folder, "Folder for results, created if it is missing");
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "surf/core/parameters.h"
+#include "surf/io/mesh_unit.h"
 #include "surf/mc/physics/material.h"
 #include "surf/mc/physics/physics.h"
 #include "surf/mesh/triangle_mesh.h"
@@ -76,6 +77,10 @@ struct RefineSummary {
   std::vector<std::string> reasons;  ///< why the result is not to be trusted; none: it is
   std::vector<std::filesystem::path> written;
 };
+
+/// Reads a mesh, or heights as the sheet that they are. `notes`: what had to be assumed.
+TriangleMesh read_refined_start(const std::filesystem::path& file, const io::MeshUnit& unit,
+                                std::vector<std::string>& notes);
 
 /// Smooth changes of the whole shape first (sizes, angles of walls), then bumps everywhere. Writes
 /// surface.vtp, surface.stl, section.csv, view1.vti and so on, report.json and panel.png to the

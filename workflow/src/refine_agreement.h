@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+
+#include "surf/core/placed_image.h"
+#include "surf/refinement/fit_modes.h"
+#include "surf/sem/sem_noise.h"
+
+namespace surf::workflow {
+
+/// Noise of an image by its flat places; nothing where it has too few.
+std::optional<SemNoise> noise_of_flats(const PlacedImage& image);
+
+/// Noise by what a simulated image leaves, its own chance included.
+SemNoise noise_of_rest(const PlacedImage& image, const Grid<double>& simulated,
+                       const RefinedViewState& state);
+
+/// Of measured and simulated pixels that count; 0 where one of the two shows nothing.
+double correlation(const RefinedView& view);
+
+/// Rms of what gain and offset leave, less what noise makes of it, over the signal's deviation.
+double unexplained_share(const RefinedView& view, const RefinedViewState& state,
+                         const SemNoise& noise);
+
+}  // namespace surf::workflow
