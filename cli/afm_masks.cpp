@@ -34,14 +34,14 @@ std::vector<std::string> MaskInput::files() const {
 }
 
 void describe(ParameterVisitor& visit, MaskInput& input) {
-  visit(input.use,
-        {.name = "scan.use",
-         .help =
-             "Image of the scan's size: only samples where it is not 0 count (.tif .png .exr .vti)",
+  visit(input.use, {.name = "scan.use",
+                    .help = "Mask, an image of the scan's size: only samples where it is not 0 are "
+                            "used (.tif .png .exr .vti)",
+                    .file = FileRole::read});
+  visit(input.exclude,
+        {.name = "scan.exclude",
+         .help = "Mask, an image of the scan's size: samples where it is not 0 are left out",
          .file = FileRole::read});
-  visit(input.exclude, {.name = "scan.exclude",
-                        .help = "Image of the scan's size: samples where it is not 0 do not count",
-                        .file = FileRole::read});
 }
 
 Mask read_masks(const MaskInput& input, const HeightField& field) {

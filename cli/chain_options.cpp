@@ -87,14 +87,13 @@ void describe(ParameterVisitor& visit, ChainFiles& files) {
                     .form = "FILE|SHAPE",
                     .file = FileRole::read});
   describe(visit, files.material);
-  visit(files.landmarks,
-        {.name = "registration.landmarks",
-         .help = "Places seen in both images, to start from: CSV with a first line "
-                 "sem_x_px,sem_y_px,afm_x_px,afm_y_px, or _nm, "
-                 "or sem_col_px,sem_row_px counted from the top left",
-         .otherwise = "none are needed",
-         .form = "FILE.csv",
-         .file = FileRole::read});
+  visit(files.landmarks, {.name = "registration.landmarks",
+                          .help = "Landmarks seen in both images, to start from: CSV with a first "
+                                  "line sem_x_px,sem_y_px,afm_x_px,afm_y_px, or _nm, or "
+                                  "sem_col_px,sem_row_px counted from the top left",
+                          .otherwise = "none are needed",
+                          .form = "FILE.csv",
+                          .file = FileRole::read});
 }
 
 void take_afm(const ChainOptions& o, const ChainFiles& files, workflow::AfmInput& afm) {

@@ -212,7 +212,7 @@ void add_info(CLI::App& app, Action& action) {
   options->bound.add<io::SpecimenRequest>(*sub, "Options", {},
                                           {"specimen.unit", "specimen.override_unit"});
   options->bound.add<io::MaterialChoice>(*sub, "Options", {}, {"specimen.materials"});
-  sub->add_flag("--json", options->json, "The same as JSON: a list of one object per file")
+  sub->add_flag("--json", options->json, "Print JSON, a list of one object per file, in place of text")
       ->group("Options");
   sub->footer(examples);
   sub->callback([options, &action] {

@@ -204,7 +204,7 @@ void add_materials(CLI::App& app, Action& action) {
   const auto bound = std::make_shared<BoundParameters>();
   CLI::App* sub = app.add_subcommand("materials", "The materials and their numbers");
   bound->looks["specimen.material"] = {
-      .name = "NAME", .help = "Show this one, with sources", .positional = true};
+      .name = "NAME", .help = "Material to show in full, with sources", .positional = true};
   bound->add<io::MaterialChoice>(*sub, "Options");
   bound->add<MaterialsOutput>(*sub, "Options");
   sub->footer(examples);

@@ -257,13 +257,13 @@ void add_mesh(CLI::App& app, Action& action) {
                 "mesh.thickness"});
   const char* shown = "On the surface";
   with_role(sub->add_option("--scalar", o->scalars,
-                            "A map to go along, FILE or FILE:CHANNEL; may be repeated")
+                            "Map to store with the vertices, FILE or FILE:CHANNEL; may be repeated")
                 ->type_name("FILE")
                 ->option_text("FILE")
                 ->allow_extra_args(false)
                 ->group(shown),
             FileRole::read);
-  with_role(sub->add_option("--drape", o->drape, "A picture to lay on it, FILE or FILE:CHANNEL")
+  with_role(sub->add_option("--drape", o->drape, "Picture to drape over the surface, FILE or FILE:CHANNEL")
                 ->type_name("FILE")
                 ->group(shown),
             FileRole::read);
@@ -277,7 +277,7 @@ void add_mesh(CLI::App& app, Action& action) {
   std::string suffixes;
   for (const io::SurfaceFormat& format : io::surface_formats())
     suffixes += fmt::format(" {}", format.extension);
-  with_role(sub->add_option("-o,--output", o->output, "To write:" + suffixes)
+  with_role(sub->add_option("-o,--output", o->output, "File to write:" + suffixes)
                 ->type_name("FILE")
                 ->group(output),
             FileRole::written);

@@ -25,12 +25,11 @@ void describe(ParameterVisitor& visit, MeshParameters& p) {
                    .help = "Merge, stitch, orient, fill holes, resolve self-intersections"});
   describe(visit, p.mending);
   visit(p.smooth, {.name = "mesh.smooth",
-                   .help = "Times of Taubin smoothing",
+                   .help = "Number of rounds of Taubin smoothing",
                    .limits = within(1, 100'000),
                    .otherwise = "none"});
   describe(visit, p.reduce);
-  visit(p.solid,
-        {.name = "mesh.solid", .help = "Walls and a base under an open sheet: a closed body"});
+  visit(p.solid, {.name = "mesh.solid", .help = "Close an open sheet by walls and a base"});
   visit(p.thickness_nm, {.name = "mesh.thickness",
                          .help = "Thickness of the base under the lowest place",
                          .unit = Unit::nm,

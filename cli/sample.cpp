@@ -128,7 +128,7 @@ void add_sample(CLI::App& app, Action& action) {
       app.add_subcommand("sample",
                          "A scan and an SEM image of a known surface, to try a reconstruction "
                          "on");
-  sub->add_flag("--list", o->list, "Say what there is");
+  sub->add_flag("--list", o->list, "List the surfaces");
   const char* making = "Making";
   o->bound.looks["sample.name"] = {.name = "NAME", .positional = true};
   o->bound.looks["output"] = {.name = "-o,--output"};

@@ -162,7 +162,7 @@ void describe(ParameterVisitor& visit, TrainFiles& files) {
                         .file = FileRole::read});
   describe_some(
       visit, files.material,
-      {{"specimen.material", "What the surfaces are made of", "Si"}, {"specimen.materials"}});
+      {{"specimen.material", "Material of the surfaces", "Si"}, {"specimen.materials"}});
 }
 
 workflow::TrainJob make_train_job(const TrainOptions& o) {

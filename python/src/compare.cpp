@@ -133,7 +133,7 @@ void add_compare(py::module_& module) {
   f.arguments = {{"before", "PathLike | HeightField | Mesh | ArrayLike",
                   "A scan, a surface, or a mesh of what is expected.", true, false},
                  {"after", "PathLike | HeightField | Mesh | Image | ArrayLike",
-                  "Likewise, or an SEM image.", true, false}};
+                  "A scan, a surface, a mesh or an SEM image of the later state.", true, false}};
   f.takes<workflow::CompareJob>()
       .takes<io::MaterialChoice>()
       .takes<io::SpecimenRequest>({}, all_but_units)

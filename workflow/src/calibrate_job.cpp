@@ -131,7 +131,7 @@ void vary_gain(const CalibrateInput& input, const CalibrationImages& images, dou
 
 void describe(ParameterVisitor& visit, CalibrateParameters& p) {
   visit(p.edge, {"mirror", "flat", "periodic"},
-        {.name = "calibration.edge", .help = "Continuation of HEIGHTS outside"});
+        {.name = "calibration.edge", .help = "Continuation of HEIGHTS outside their samples"});
   NamesField fit(p.fit);
   visit.visit({.name = "calibration.fit",
                .help = "Simulated channels to fit",
@@ -139,22 +139,22 @@ void describe(ParameterVisitor& visit, CalibrateParameters& p) {
                .form = "NAMES"},
               fit);
   visit(p.ratio, {.name = "calibration.ratio",
-                  .help = "Gain of the second channel over the first's, where it is known",
+                  .help = "Ratio of the second channel's gain to the first's, where it is known",
                   .otherwise = "fitted"});
   visit(p.offset, {.name = "calibration.offset",
-                   .help = "What the image shows without a signal, where it is known",
+                   .help = "Grey level without a signal, where it is known",
                    .limits = within(-most_level, most_level),
                    .otherwise = "fitted"});
   visit(p.black, {.name = "calibration.black",
-                  .help = "Level from which pixels downwards are saturated and left out",
+                  .help = "Grey level at and below which pixels are saturated and left out",
                   .limits = within(-most_level, most_level),
                   .otherwise = "none are"});
   visit(p.white, {.name = "calibration.white",
-                  .help = "Level from which pixels upwards are saturated and left out",
+                  .help = "Grey level at and above which pixels are saturated and left out",
                   .limits = within(-most_level, most_level),
                   .otherwise = "none are"});
   visit(p.range_nm, {.name = "calibration.range",
-                     .help = "Half the width of squares over which the gain may vary",
+                     .help = "Half the width of the squares over which the gain may vary",
                      .unit = Unit::nm,
                      .limits = above(0),
                      .otherwise = "it is constant"});

@@ -25,21 +25,21 @@ void describe(ParameterVisitor& visit, CertaintyParameters& p) {
         p.noise_nm = parse_value(text, noise, subject);
       });
   visit(p.sigmas, {.name = "certainty.sigmas",
-                   .help = "Standard deviations that the noise is taken to be within",
+                   .help = "Number of standard deviations that bound the noise",
                    .limits = above(0, 1e6),
                    .level = Level::advanced});
-  visit(p.neighbourhood, {.name = "certainty.neighbourhood",
-                          .help = "Pixels that contacts may lie apart",
-                          .limits = within(0, 100),
-                          .otherwise = "as flat as the apex is within the noise",
-                          .form = "PIXELS",
-                          .level = Level::advanced});
-  visit(p.distance_nm,
-        {.name = "certainty.distance",
-         .help = "Distance that the tip keeps from the surface, of non-contact scans",
-         .unit = Unit::nm,
-         .limits = at_least(0),
+  visit(p.neighbourhood,
+        {.name = "certainty.neighbourhood",
+         .help = "Largest distance in pixels between contacts that count as one place",
+         .limits = within(0, 100),
+         .otherwise = "as flat as the apex is within the noise",
+         .form = "PIXELS",
          .level = Level::advanced});
+  visit(p.distance_nm, {.name = "certainty.distance",
+                        .help = "Distance between tip and surface in non-contact scans",
+                        .unit = Unit::nm,
+                        .limits = at_least(0),
+                        .level = Level::advanced});
 }
 
 CertaintyResult certainty(const HeightField& scan, const Tip& tip, const CertaintyParameters& p,

@@ -174,8 +174,9 @@ void describe_known(ParameterVisitor& visit, KnownViews& views) {
 /// Whether the tip is fitted, as two flags. Without either, it depends on how the tip was found.
 void describe_tip_fit(ParameterVisitor& visit, std::optional<bool>& refine) {
   bool keep = refine == false;
-  visit(keep, {.name = "reconstruction.keep_tip",
-               .help = "Do not fit the tip that was found in the scan further"});
+  visit(keep,
+        {.name = "reconstruction.keep_tip",
+         .help = "Keep the tip that was found in the scan instead of fitting it with the surface"});
   if (!visit.reads()) return;
   if (keep && refine == true)
     throw UsageError("`reconstruction.keep_tip`",
@@ -234,8 +235,8 @@ void describe(ParameterVisitor& visit, ModelRequest& request) {
                  .file = FileRole::read});
   visit(request.signal,
         {.name = "reconstruction.signal",
-         .help = "What the SEM image shows: SE, BSE, a quadrant BSE-right, BSE-top, BSE-left, "
-                 "BSE-bottom, or a detector as 'semsurf simulate --detector' takes it",
+         .help = "Signal of the SEM image: SE, BSE, a quadrant BSE-right, BSE-top, BSE-left, "
+                 "BSE-bottom, or a detector as for 'semsurf simulate --detector'",
          .otherwise = "a mixture of SE and BSE",
          .form = "SIGNAL"});
   visit.form(
@@ -254,9 +255,11 @@ void describe(ParameterVisitor& visit, ModelRequest& request) {
 
 void describe(ParameterVisitor& visit, PoseOptions& pose) {
   visit(pose.registration.objective, {"correlation", "mutual-information"},
-        {.name = "registration.objective", .help = "What is largest where the images agree"});
-  visit(pose.landmarks_only, {.name = "registration.landmarks_only",
-                              .help = "Do not refine the landmarks' map by the images"});
+        {.name = "registration.objective",
+         .help = "Measure of agreement that the registration maximises"});
+  visit(pose.landmarks_only,
+        {.name = "registration.landmarks_only",
+         .help = "Keep the landmarks' map instead of refining it by the images"});
   visit.form(
       {.name = "registration.transform",
        .help =
@@ -274,7 +277,7 @@ void describe(ParameterVisitor& visit, PoseOptions& pose) {
       });
   visit(pose.accept_unverified,
         {.name = "registration.accept_registration",
-         .help = "Go on even where the images seem to show different places"});
+         .help = "Accept a registration even where the images seem to show different places"});
 }
 
 void describe(ParameterVisitor& visit, RegisterJob& job) {
@@ -292,7 +295,7 @@ void describe(ParameterVisitor& visit, RegisterJob& job) {
                  .file = FileRole::written});
   describe_path(visit, job.picture,
                 {.name = "output.picture",
-                 .help = "Both images and squares of them in turn: .png .svg",
+                 .help = "Picture of both images, and of a checkerboard of them: .png .svg",
                  .form = "FILE",
                  .recorded = false,
                  .file = FileRole::written});
@@ -309,8 +312,8 @@ void describe(ParameterVisitor& visit, ReconstructJob& job) {
     describe_calibration(visit, job.calibration);
     visit.form(
         {.name = "reconstruction.sem_noise",
-         .help = "Variance by the grey level, a line: slope, intercept and, if it matters, least "
-                 "variance",
+         .help = "Noise variance as a line over the grey level: its slope, its intercept and, "
+                 "optionally, the least variance",
          .otherwise = "estimated from flat places",
          .form = "SLOPE,INTERCEPT"},
         [&] {
@@ -320,18 +323,16 @@ void describe(ParameterVisitor& visit, ReconstructJob& job) {
         [&](std::string_view text, const std::string& subject) {
           job.sem_noise = read_sem_noise(text, subject);
         });
-    visit(
-        job.model_error,
-        {.name = "reconstruction.model_error",
-         .help = "What the model of SEM images may be off by, as a share of the image's contrast: "
-                 "by other physics, another detector, contamination",
-         .unit = Unit::share,
-         .limits = within(0, 1)});
-    visit(job.line_jitter_px,
-          {.name = "reconstruction.line_jitter",
-           .help = "By how many pixels the SEM image's rows may be displaced along themselves, as "
-                   "a standard deviation",
-           .limits = within(0, 5)});
+    visit(job.model_error,
+          {.name = "reconstruction.model_error",
+           .help = "Expected error of the model of SEM images, as a share of the image's contrast, "
+                   "because of other physics, another detector or contamination",
+           .unit = Unit::share,
+           .limits = within(0, 1)});
+    visit(job.line_jitter_px, {.name = "reconstruction.line_jitter",
+                               .help = "Standard deviation of displacements of the SEM image's "
+                                       "rows along themselves, in pixels",
+                               .limits = within(0, 5)});
     visit(job.film,
           {.name = "reconstruction.film",
            .help = "Material of a film of 1 to 2 nm on the specimen, as SiO2 or C, whose thickness "
@@ -340,8 +341,8 @@ void describe(ParameterVisitor& visit, ReconstructJob& job) {
            .form = "MATERIAL"});
     visit(job.corrections,
           {.name = "reconstruction.corrections",
-           .help = "Most rounds in which Monte Carlo images of the surface correct the model of "
-                   "SEM images, until the surface moves no more",
+           .help = "Largest number of rounds in which Monte Carlo images of the surface correct "
+                   "the model of SEM images; rounds end when the surface no longer moves",
            .limits = within(0, 10)});
     visit(job.correction_electrons, {.name = "reconstruction.correction_electrons",
                                      .help = "Primaries per pixel of these images",
@@ -381,7 +382,7 @@ void describe(ParameterVisitor& visit, ReconstructJob& job) {
                          .limits = within(1, 8)});
     if (visit.reads()) job.afm->preparation.seed = job.options.seed;
   }
-  describe_folder(visit, job.folder, "Folder for all results; it is made");
+  describe_folder(visit, job.folder, "Folder for all results, created if it is missing");
   describe_picture(visit, job.picture);
   describe_threads(visit, job.options.threads);
 }

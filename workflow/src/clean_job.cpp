@@ -47,9 +47,9 @@ Spikes read_spikes(std::string_view text, const std::string& subject) {
 void describe(ParameterVisitor& visit, CleanParameters& p) {
   visit.form(
       {.name = "clean.spikes",
-       .help = "Take the median of this many samples squared where a height is off it by more than "
-               "the limit; without a "
-               "limit, by more than six standard deviations of the pixels' noise",
+       .help =
+           "Replace a height by the median of WIDTH x WIDTH samples where it differs from that by "
+           "more than LENGTH; without LENGTH, by more than six standard deviations of the noise",
        .form = "WIDTH[:LENGTH]"},
       [&p] {
         if (!p.spikes) return std::string();
@@ -60,7 +60,7 @@ void describe(ParameterVisitor& visit, CleanParameters& p) {
         p.spikes = read_spikes(text, subject);
       });
   visit(p.median, {.name = "clean.median",
-                   .help = "Take the median of this many samples squared",
+                   .help = "Replace each height by the median of WIDTH x WIDTH samples",
                    .limits = widths,
                    .form = "WIDTH"});
   visit(p.closing, {.name = "clean.closing",
@@ -69,7 +69,7 @@ void describe(ParameterVisitor& visit, CleanParameters& p) {
                     .form = "WIDTH"});
   visit(p.disc, {.name = "clean.disc", .help = "Medians of discs instead of squares"});
   visit(p.fill_holes,
-        {.name = "clean.fill_holes", .help = "Give holes the height found for them too"});
+        {.name = "clean.fill_holes", .help = "Give holes a height from around them, too"});
 }
 
 void check(const CleanParameters& p) {

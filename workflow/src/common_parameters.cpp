@@ -128,10 +128,9 @@ void describe_beam(ParameterVisitor& visit, double& energy_ev, double& spot_nm,
   request.beam.energy_ev = energy_ev;
   request.beam.spot_nm = spot_nm;
   request.physics = physics;
-  describe_some(visit, request,
-                {{.name = "beam.energy", .otherwise = "must be said"},
-                 {"beam.spot"},
-                 {"simulation.physics"}});
+  describe_some(
+      visit, request,
+      {{.name = "beam.energy", .otherwise = "required"}, {"beam.spot"}, {"simulation.physics"}});
   if (!visit.reads()) return;
   energy_ev = request.beam.energy_ev;
   spot_nm = request.beam.spot_nm;

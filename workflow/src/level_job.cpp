@@ -58,9 +58,8 @@ void take_off(LevelResult& result, const LevelParameters& p, const Mask& use, co
 void describe(ParameterVisitor& visit, LevelParameters& p) {
   visit(p.method, {"hough", "plane", "polynomial", "none"},
         {.name = "level.method",
-         .help =
-             "What is taken off the heights: the plane that most of them lie on (hough), the mean "
-             "plane, a polynomial, or nothing"});
+         .help = "Surface to subtract: the plane that most heights lie on (hough), the mean plane "
+                 "(plane), a polynomial, or nothing (none)"});
   visit(p.degree, {.name = "level.degree",
                    .help = "Degree of the polynomial that is taken off",
                    .limits = within(0, 6)});
@@ -72,8 +71,8 @@ void describe(ParameterVisitor& visit, LevelParameters& p) {
                          .level = Level::advanced});
   visit(p.rows, {"median", "difference"},
         {.name = "level.rows",
-         .help = "Take off steps between scan lines, by the median of each or of the differences "
-                 "to the one below",
+         .help = "Remove steps between scan lines, by the median of each line or of its "
+                 "differences from the line below",
          .otherwise = "none"},
         "none");
 }

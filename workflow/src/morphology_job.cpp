@@ -29,17 +29,15 @@ const char* name(MorphologyOperation operation) {
 
 void describe(ParameterVisitor& visit, MorphologyParameters& p) {
   visit(p.upsample, {.name = "morphology.upsample",
-                     .help = "Interpolate to so many samples per pixel, which changes what is made "
-                             "of two operations: opening, "
-                             "closing and non-contact",
+                     .help = "Samples per pixel to interpolate to; it changes opening, closing and "
+                             "non-contact scans, which consist of two operations",
                      .limits = within(1, 32),
                      .level = Level::advanced});
-  visit(p.distance_nm,
-        {.name = "morphology.distance",
-         .help = "Distance that the tip keeps from the surface, of non-contact scans",
-         .unit = Unit::nm,
-         .limits = at_least(0),
-         .level = Level::advanced});
+  visit(p.distance_nm, {.name = "morphology.distance",
+                        .help = "Distance between tip and surface in non-contact scans",
+                        .unit = Unit::nm,
+                        .limits = at_least(0),
+                        .level = Level::advanced});
 }
 
 HeightField morphology(MorphologyOperation operation, const HeightField& field, const Tip& tip,

@@ -113,13 +113,13 @@ void describe(ParameterVisitor& visit, PredictJob& job) {
                  .file = FileRole::read});
   visit(job.edge, {"mirror", "flat", "periodic"},
         {.name = "prediction.edge",
-         .help = "Continuation of the heights outside",
+         .help = "Continuation of the heights outside their samples",
          .otherwise = "mirror"});
   visit(job.resample, {.name = "prediction.resample",
                        .help = "Resample heights of another pitch to the model's pixels"});
   describe(visit, job.reading);
   visit(job.wanted.material, {.name = "specimen.material",
-                              .help = "What the surface is made of",
+                              .help = "Material of the surface",
                               .otherwise = "as the model says",
                               .form = "MATERIAL"});
   std::optional<double> energy_ev =

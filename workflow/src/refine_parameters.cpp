@@ -31,62 +31,65 @@ void describe(ParameterVisitor& visit, RefineJob& job) {
        {.name = "beam.azimuth",
         .help = "Direction that the beam is tilted to in each SEM image: 0 is +x, 90deg is +y"},
        {.name = "reconstruction.view_signal",
-        .help = "What each SEM image shows, with semicolons between: SE, BSE, a quadrant or a "
-                "detector as 'semsurf simulate --detector' takes it",
+        .help = "Signal of each SEM image, separated by semicolons: SE, BSE, a quadrant or a "
+                "detector as for 'semsurf simulate --detector'",
         .otherwise = "SE"},
        {.name = "reconstruction.tilt_error"}});
   if (visit.reads()) {
     job.tilts_deg = views.tilts_deg, job.azimuths_deg = views.azimuths_deg;
     job.signals = views.signals, job.tilt_error_deg = views.tilt_error_deg;
   }
-  visit(job.substrate_z_nm, {.name = "refinement.substrate",
-                             .help = "The same material fills everything below this height",
-                             .unit = Unit::nm,
-                             .limits = within(-1e6, 1e6),
-                             .otherwise = "there is none"});
+  visit(job.substrate_z_nm,
+        {.name = "refinement.substrate",
+         .help = "Height of a substrate of the same material, which fills everything below it",
+         .unit = Unit::nm,
+         .limits = within(-1e6, 1e6),
+         .otherwise = "there is none"});
   visit(job.start_error_nm, {.name = "refinement.start_error",
-                             .help = "What the start may be off by as a whole: sizes, places, "
-                                     "angles of walls; a standard deviation",
+                             .help = "Expected error of the start's shape as a whole: sizes, "
+                                     "places, angles of walls; a standard deviation",
                              .unit = Unit::nm,
                              .limits = within(0.01, 10'000)});
-  visit(
-      job.height_error_nm,
-      {.name = "refinement.height_error",
-       .help = "What the start's heights may be off by: images from above tell them badly, an AFM "
-               "scan well",
-       .unit = Unit::nm,
-       .limits = within(0.01, 10'000)});
-  visit(job.bump_error_nm, {.name = "refinement.bump_error",
-                            .help = "What it may be off by in places besides",
-                            .unit = Unit::nm,
-                            .limits = within(0.01, 10'000)});
+  visit(job.height_error_nm,
+        {.name = "refinement.height_error",
+         .help = "Expected error of the start's heights, a standard deviation: small where an AFM "
+                 "scan gave them, as images from above hardly show heights",
+         .unit = Unit::nm,
+         .limits = within(0.01, 10'000)});
+  visit(job.bump_error_nm,
+        {.name = "refinement.bump_error",
+         .help = "Local error of the start besides its error as a whole, a standard deviation",
+         .unit = Unit::nm,
+         .limits = within(0.01, 10'000)});
   visit(job.bump_length_nm, {.name = "refinement.bump_length",
-                             .help = "Over how far places are off alike",
+                             .help = "Correlation length of the local error",
                              .unit = Unit::nm,
                              .limits = within(0.1, 100'000)});
   describe_chosen(visit, job.edge_nm,
                   {.name = "refinement.edge",
-                   .help = "Edges of the mesh's triangles in what the images show",
+                   .help = "Length of triangle edges where the images show the mesh",
                    .otherwise = "two pixels"});
   describe_chosen(visit, job.spacing_nm,
                   {.name = "refinement.spacing",
-                   .help = "Distance of bumps by which the surface may change in places",
+                   .help = "Distance between the bumps that are fitted",
                    .otherwise = "three edges"});
   visit(job.smooth_rounds, {.name = "refinement.smooth_rounds",
-                            .help = "Steps of the whole shape",
+                            .help = "Steps that fit the shape as a whole",
                             .limits = within(1, 20)});
-  visit(job.bump_rounds, {.name = "refinement.bump_rounds",
-                          .help = "Steps of bumps after it; 0: none",
-                          .limits = within(0, 20)});
+  visit(job.bump_rounds,
+        {.name = "refinement.bump_rounds",
+         .help = "Steps that fit local bumps, after those of the whole shape; 0: none",
+         .limits = within(0, 20)});
   visit(job.electrons, {.name = "refinement.electrons",
                         .help = "Primaries per pixel of simulated images",
                         .limits = within(2, 1'000'000)});
-  visit(job.effect_electrons, {.name = "refinement.effect_electrons",
-                               .help = "Primaries per pixel that tell what a change does",
-                               .limits = within(2, 1'000'000)});
+  visit(job.effect_electrons,
+        {.name = "refinement.effect_electrons",
+         .help = "Primaries per pixel of the images that measure the effect of a change",
+         .limits = within(2, 1'000'000)});
   visit(job.model_error, {.name = "refinement.model_error",
-                          .help = "What simulations may be off by, as a share of the contrast: "
-                                  "other physics, another detector",
+                          .help = "Expected error of simulated images, as a share of the contrast, "
+                                  "because of other physics or another detector",
                           .unit = Unit::share,
                           .limits = within(0, 1)});
   visit(job.seed, {.name = "refinement.seed", .help = "Seed of the simulations"});

@@ -22,7 +22,7 @@ void describe(ParameterVisitor& visit, SampleJob& job) {
   std::string names;
   for (const SampleScene& scene : sample_scenes()) names += (names.empty() ? "" : "|") + scene.name;
   visit(job.name, {.name = "sample.name", .help = "The surface", .form = names});
-  describe_folder(visit, job.folder, "Folder for the files; it is made");
+  describe_folder(visit, job.folder, "Folder for the files, created if it is missing");
   visit(job.electrons, {.name = "sample.electrons",
                         .help = "Primaries per pixel of the SEM image",
                         .limits = within(1, double(std::int64_t{1} << 31))});
@@ -39,13 +39,15 @@ void describe(ParameterVisitor& visit, SampleJob& job) {
         job.width = *scan.width, job.height = *scan.height;
       });
   describe(visit, job.physics);
-  visit(job.tip_lean_deg,
-        {.name = "sample.tip_lean",
-         .help = "How much wider the tip's half angle is on one side, and narrower on the other",
-         .unit = Unit::deg,
-         .limits = within(-60, 60)});
+  visit(
+      job.tip_lean_deg,
+      {.name = "sample.tip_lean",
+       .help =
+           "Lean of the tip: its half angle is wider by this on one side and narrower on the other",
+       .unit = Unit::deg,
+       .limits = within(-60, 60)});
   visit(job.tip_azimuth_deg, {.name = "sample.tip_azimuth",
-                              .help = "Where the wider side is, from +x, anticlockwise",
+                              .help = "Direction of the tip's wider side, anticlockwise from +x",
                               .unit = Unit::deg});
   visit(job.gain_drift, {.name = "sample.gain_drift",
                          .help = "Share by which the SEM's gain drifts over the image, as charging "

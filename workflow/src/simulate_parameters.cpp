@@ -73,7 +73,7 @@ void describe(ParameterVisitor& visit, CheckpointOptions& checkpoint) {
          .level = Level::advanced,
          .recorded = false});
   visit(checkpoint.restart, {.name = "job.restart",
-                             .help = "Begin anew, whatever was done before",
+                             .help = "Begin anew and ignore unfinished work",
                              .level = Level::advanced,
                              .recorded = false});
 }

@@ -169,7 +169,7 @@ void describe(ParameterVisitor& visit, SweepJob& job) {
   describe_folder(visit, job.folder, "Folder of the images and the table");
   visit.form(
       {.name = "sweep.part",
-       .help = "Part K of N to do: the third of 16 is 3/16",
+       .help = "Part of the sweep to do, part K of N: the third of 16 is 3/16",
        .otherwise = "all",
        .form = "K/N",
        .recorded = false},

@@ -239,7 +239,7 @@ void describe(ParameterVisitor& visit, TipParameters& p) {
          .otherwise = "sweep; blind with a threshold"});
   describe_noise(visit, p.noise);
   visit(p.threshold_nm, {.name = "tip.threshold",
-                         .help = "Lower samples of the tip only by more than this",
+                         .help = "Threshold: samples of the tip are lowered only by more than this",
                          .unit = Unit::nm,
                          .limits = at_least(0),
                          .otherwise = "found by the answer"});
@@ -250,7 +250,7 @@ void describe(ParameterVisitor& visit, TipParameters& p) {
                            .otherwise = "as along them",
                            .level = Level::advanced});
   visit(p.apex_tolerance_nm, {.name = "tip.apex_tolerance",
-                              .help = "How far the apex may stick out of the scan",
+                              .help = "Tolerance by which the apex may stick out of the scan",
                               .unit = Unit::nm,
                               .limits = at_least(0),
                               .level = Level::advanced});
@@ -260,7 +260,7 @@ void describe(ParameterVisitor& visit, TipParameters& p) {
                      .limits = at_least(0),
                      .level = Level::advanced});
   visit(p.maxima, {.name = "tip.maxima",
-                   .help = "Use local maxima of the scan only",
+                   .help = "Use only the local maxima of the scan",
                    .level = Level::advanced});
   visit.form(
       {.name = "tip.sweep",
@@ -284,7 +284,7 @@ void describe(ParameterVisitor& visit, TipParameters& p) {
 void describe(ParameterVisitor& visit, CharacterizerParameters& p) {
   visit(p.size, {.name = "tip.size", .help = "Samples across the tip, odd", .limits = sizes});
   visit(p.search, {.name = "tip.search",
-                   .help = "Samples that scan and characterizer may be apart",
+                   .help = "Largest shift in samples between scan and characterizer",
                    .limits = within(0, 1000),
                    .level = Level::advanced});
 }

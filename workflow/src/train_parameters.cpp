@@ -176,11 +176,11 @@ void describe(ParameterVisitor& visit, LearnOptions& learn) {
                .form = "N,N..."},
               hidden);
   visit(learn.iterations, {.name = "training.iterations",
-                           .help = "Most iterations of a network's training",
+                           .help = "Largest number of iterations of a network's training",
                            .limits = within(1, 100'000),
                            .otherwise = std::to_string(network.iterations)});
   visit(learn.decay, {.name = "training.decay",
-                      .help = "How strongly large weights of a network are held back",
+                      .help = "Weight decay of a network's training",
                       .limits = at_least(0),
                       .otherwise = fmt::format("{:g}", network.decay)});
   visit(learn.model_error, {.name = "training.model_error",
@@ -199,7 +199,7 @@ void describe(ParameterVisitor& visit, LearnOptions& learn) {
                                  .help = "Wide neighbourhoods of a filter bank on fewer samples"});
   visit(learn.table_electrons,
         {.name = "training.table_electrons",
-         .help = "Primaries that a table is made of: at each angle of slopes, or in all",
+         .help = "Primaries that a table is simulated with, at each angle of slopes or in all",
          .limits = within(2, most_electrons),
          .otherwise = fmt::format("{} at each, 10240 in all", SlopeTableOptions{}.electrons)});
 }
@@ -217,16 +217,16 @@ void describe(ParameterVisitor& visit, TrainJob& job) {
                        .limits = within(0, 1000)});
   visit(job.estimate, {"plain", "guided"},
         {.name = "training.estimate",
-         .help = "How images that teach are estimated: guided by shape, fewer electrons do; "
-                 "images of surfaces that are held out stay plain"});
+         .help = "Estimate of the training images: guided needs fewer electrons; images of "
+                 "surfaces that are held out are always plain"});
   show_or_none(
       visit, job.fine,
       {.name = "training.fine",
-       .help = "Samples per pixel to simulate with, smooth between them",
+       .help = "Samples per pixel to simulate with, interpolated smoothly",
        .limits = within(1, 8),
        .otherwise = "so many that they are at most a fifth of the electrons' range apart"});
   visit(job.edge, {"mirror", "flat", "periodic"},
-        {.name = "training.edge", .help = "Continuation of surfaces outside"});
+        {.name = "training.edge", .help = "Continuation of surfaces outside their samples"});
   describe(visit, job.reading);
   visit.form(
       {.name = "training.pixel_size",

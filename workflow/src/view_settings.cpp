@@ -47,7 +47,7 @@ void describe(ParameterVisitor& visit, ViewSettings& views) {
                     .form = "ENERGY"});
   visit.form(
       {.name = "reconstruction.view_signal",
-       .help = "What each SEM image shows, or each after the first, with semicolons between",
+       .help = "Signal of each SEM image, or of each after the first, separated by semicolons",
        .otherwise = "as the first",
        .form = "SIGNAL"},
       [&] { return fmt::format("{}", fmt::join(views.signals, ";")); },
@@ -57,11 +57,10 @@ void describe(ParameterVisitor& visit, ViewSettings& views) {
             views.signals.emplace_back(one.substr(first, one.find_last_not_of(' ') + 1 - first));
       },
       FieldKind::list);
-  visit(views.tilt_error_deg,
-        {.name = "reconstruction.tilt_error",
-         .help = "What tilts may be off by, as a standard error; they are fitted within it",
-         .unit = Unit::deg,
-         .limits = within(0.001, 10)});
+  visit(views.tilt_error_deg, {.name = "reconstruction.tilt_error",
+                               .help = "Standard error of the tilts, which are fitted within it",
+                               .unit = Unit::deg,
+                               .limits = within(0.001, 10)});
 }
 
 std::vector<ViewAngles> angles_of(const ViewSettings& s, std::size_t views, double energy_ev) {

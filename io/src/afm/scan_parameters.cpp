@@ -16,7 +16,7 @@ void describe(ParameterVisitor& visit, HeightReadOptions& o) {
          .form = "NAME"});
   visit.form(
       {.name = "scan.height_unit",
-       .help = "Length of one unit of height, of files that do not say",
+       .help = "Length of one unit of height, for files that do not state it",
        .unit = Unit::nm,
        .otherwise = "nm",
        .form = "LENGTH"},

@@ -46,7 +46,7 @@ const std::vector<mc::Material>& builtin_materials() {
 
 void describe(ParameterVisitor& visit, MaterialChoice& choice) {
   visit(choice.name,
-        {.name = "specimen.material", .help = "What the specimen is made of", .form = "MATERIAL"});
+        {.name = "specimen.material", .help = "Material of the specimen", .form = "MATERIAL"});
   visit(choice.files, {.name = "specimen.materials",
                        .help = "File of your own materials (TOML)",
                        .form = "FILE",

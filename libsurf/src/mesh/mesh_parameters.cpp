@@ -27,23 +27,25 @@ void describe(ParameterVisitor& visit, RepairOptions& o) {
                              .unit = Unit::nm,
                              .limits = at_least(0)});
   bool keep = !o.resolve_self_intersections;
-  visit(keep, {.name = "mesh.keep_intersections", .help = "Count self-intersections only"});
+  visit(keep, {.name = "mesh.keep_intersections",
+               .help = "Count self-intersections, but leave them as they are"});
   o.resolve_self_intersections = !keep;
 }
 
 void describe(ParameterVisitor& visit, SimplifyOptions& o) {
   std::optional<double> tolerance_nm =
       o.tolerance_nm > 0 ? std::optional(o.tolerance_nm) : std::nullopt;
-  visit(tolerance_nm, {.name = "mesh.mesh_tolerance",
-                       .help = "Fewer triangles, nowhere farther off than this",
-                       .unit = Unit::nm,
-                       .limits = above(0),
-                       .otherwise = "all"});
+  visit(tolerance_nm,
+        {.name = "mesh.mesh_tolerance",
+         .help = "Simplify to fewer triangles, moving the surface nowhere by more than this",
+         .unit = Unit::nm,
+         .limits = above(0),
+         .otherwise = "all"});
   o.tolerance_nm = tolerance_nm.value_or(0);
   std::optional<std::int64_t> triangles =
       o.triangles > 0 ? std::optional(static_cast<std::int64_t>(o.triangles)) : std::nullopt;
   visit(triangles, {.name = "mesh.triangles",
-                    .help = "Fewer triangles, down to this many",
+                    .help = "Simplify to this many triangles",
                     .limits = within(4, 1e9),
                     .otherwise = "all"});
   o.triangles = static_cast<std::size_t>(triangles.value_or(0));

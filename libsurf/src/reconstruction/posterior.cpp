@@ -71,10 +71,10 @@ void add_prior_pull(const Objective& o, const Objective::State& s, std::uint64_t
 
 /// Solves A x = r by preconditioned conjugate gradients, until the residual in the preconditioner's
 /// norm has fallen to `reduction` of its initial value. `product` is the product with A.
-template <class Product>
-Step solve(const Objective& o, const Product& product, const Preconditioner& m, const Step& right,
-           double reduction, const Watch& watch) {
-  Step x = o.zero(), r = right, z = m.solve(r), p = z;
+template <class Product, class Inverse>
+Step solve(const Objective& o, const Product& product, const Inverse& approximate_inverse,
+           const Step& right, double reduction, const Watch& watch) {
+  Step x = o.zero(), r = right, z = approximate_inverse(r), p = z;
   double rz = dot(r, z);
   const double begin = rz;
   for (int i = 0; i < 500 && rz > reduction * reduction * begin; ++i) {
@@ -84,7 +84,7 @@ Step solve(const Objective& o, const Product& product, const Preconditioner& m, 
     if (!(alpha > 0)) break;
     add(x, alpha, p);
     add(r, -alpha, ap);
-    z = m.solve(r);
+    z = approximate_inverse(r);
     const double next = dot(r, z), beta = next / rz;
     Step q = z;
     add(q, beta, p);
@@ -92,6 +92,13 @@ Step solve(const Objective& o, const Product& product, const Preconditioner& m, 
     rz = next;
   }
   return x;
+}
+
+template <class Product>
+Step solve(const Objective& o, const Product& product, const Preconditioner& m, const Step& right,
+           double reduction, const Watch& watch) {
+  return solve(
+      o, product, [&](const Step& r) { return m.solve(r); }, right, reduction, watch);
 }
 
 }  // namespace
@@ -123,6 +130,19 @@ Step prior_bias(const Objective& o, const Unknowns& at, const Curvature& a, cons
   Step pull = o.zero();
   o.prior.evaluate(at.z_nm, &pull.z_nm, nullptr);
   return solve(o, product, *a.preconditioner, pull, 0.05, watch);
+}
+
+Step change_by_tip(const Objective& o, const Unknowns& at, const Curvature& a, const Watch& watch) {
+  Step tip = o.zero();
+  tip.tip = at.tip;
+  const auto held = [](Step v) {
+    v.tip = {};
+    return v;
+  };
+  const auto product = [&](const Step& v) { return held(o.product(at, a.state, v, &a.near)); };
+  return solve(
+      o, product, [&](const Step& r) { return held(a.preconditioner->solve(r)); }, product(tip),
+      0.05, watch);
 }
 
 std::vector<double> deviations_of(const Objective& o, const Unknowns& at, const Curvature& a,
@@ -158,6 +178,12 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
   Grid<double> bias = prior_bias(o, at, a, watch).z_nm;
   for (double& b : bias.data()) b *= b;
   bias = around.sum(bias);
+  if (o.fit_tip) {
+    Grid<double> by_tip = change_by_tip(o, at, a, watch).z_nm;
+    for (double& v : by_tip.data()) v *= v;
+    by_tip = around.sum(by_tip);
+    for (std::size_t i = 0; i < bias.size(); ++i) bias.data()[i] += by_tip.data()[i];
+  }
   Posterior out{Grid<double>(o.frame.width, o.frame.height),
                 Grid<unsigned char>(o.frame.width, o.frame.height)};
   for (std::size_t i = 0; i < drawn.size(); ++i) {

@@ -33,6 +33,13 @@ Curvature expected_curvature(const Objective& objective, const Unknowns& at, std
 Step prior_bias(const Objective& objective, const Unknowns& at, const Curvature& curvature,
                 const Watch& watch);
 
+/// What all else changes by, to first order, if the tip is put back to what it was given as: the
+/// tip's fit and the search before it are two estimates. Rounded edges of the surface and a tip
+/// that is too dull there compensate each other in the scan. So fitted tips are off by far more
+/// than noise moves them.
+Step change_by_tip(const Objective& objective, const Unknowns& at, const Curvature& curvature,
+                   const Watch& watch);
+
 /// The posterior standard deviation of each linear function of the unknowns, which is given by its
 /// derivatives c. Its square is c.A^-1 c, which costs a solution of the linear system, and the
 /// square of c.bias.
@@ -49,7 +56,8 @@ std::vector<double> deviations_of(const Objective& objective, const Unknowns& at
 /// The prior's weights are those of the expected squared curvature, including its variance, as in
 /// expectation maximisation for Student's t. The weights at the most likely surface would give too
 /// small deviations, because that surface is smoother than any draw. The bias by the prior is added
-/// in squares; where edges are rounder than the prior expects, it is the largest part.
+/// in squares; where edges are rounder than the prior expects, it is the largest part. So is
+/// `change_by_tip`, where the tip is fitted.
 Posterior posterior(const Objective& objective, const Unknowns& at, int draws, std::uint64_t seed,
                     int threads, Precision precision, const Watch& watch);
 

@@ -54,7 +54,7 @@ class ScalesField final : public Field {
 
 void describe(ParameterVisitor& visit, ReconstructionOptions& o) {
   visit(o.method, {"gauss-newton", "conjugate-gradients", "lbfgs"},
-        {.name = "reconstruction.optimiser", .help = "How the surface is searched for"});
+        {.name = "reconstruction.optimiser", .help = "Optimiser of the surface"});
   ScalesField scales(o.scales_px);
   visit.visit(
       {.name = "reconstruction.scales",
@@ -65,7 +65,7 @@ void describe(ParameterVisitor& visit, ReconstructionOptions& o) {
       scales);
   show_or_own(visit, o.iterations,
               {.name = "reconstruction.iterations",
-               .help = "Most iterations of each scale",
+               .help = "Largest number of iterations at each scale",
                .limits = within(1, 1'000'000),
                .otherwise = "the optimiser's own"});
   show_or_own(visit, o.tolerance,
@@ -73,27 +73,27 @@ void describe(ParameterVisitor& visit, ReconstructionOptions& o) {
                .help = "Gain of the objective per pixel below which an iteration ends its scale",
                .limits = above(0),
                .otherwise = "the optimiser's own"});
-  show_or_own(
-      visit, o.curvature_prior_per_nm,
-      {.name = "reconstruction.prior",
-       .help = "Expected second derivative of the surface where no image says anything, in 1/nm",
-       .limits = above(0),
-       .otherwise = "0.001, more on rough ground"});
+  show_or_own(visit, o.curvature_prior_per_nm,
+              {.name = "reconstruction.prior",
+               .help = "Expected second derivative of the surface where the images do not "
+                       "determine it, in 1/nm",
+               .limits = above(0),
+               .otherwise = "0.001, more on rough ground"});
   show_unless(visit, o.refine_transform,
               {.name = "reconstruction.fixed_transform",
-               .help = "Do not fit the map further with the surface"});
+               .help = "Keep the map as registered instead of fitting it with the surface"});
   visit(o.refine_drift, {.name = "reconstruction.fit_drift",
                          .help = "Fit a drift of the scan that bends its slow axis, with the map"});
   show_unless(visit, o.refine_calibration,
               {.name = "reconstruction.fixed_calibration",
-               .help = "Do not fit gains and offset further with the surface"});
+               .help = "Keep gains and offset instead of fitting them with the surface"});
   visit(o.refine_spot, {.name = "reconstruction.fit_spot",
                         .help = "Fit how much wider the spot is than the model's, as by defocus"});
   visit(o.refine_tip, {.name = "reconstruction.refine_tip",
                        .help = "Fit the tip with the surface, even one that is given"});
   show_unless(visit, o.uncertainty,
               {.name = "reconstruction.no_uncertainty",
-               .help = "Leave out the standard deviations of heights, which take a while"});
+               .help = "Leave out the standard deviations of heights, to save time"});
   visit(o.probes, {.name = "reconstruction.probes",
                    .help = "Random vectors that the uncertainty is estimated from",
                    .limits = within(2, 100'000)});

@@ -315,6 +315,33 @@ TEST(Posterior, DeviationsOfBothPrecisionsAgree) {
     ASSERT_NEAR(a.data()[i], b.data()[i], 0.01 * b.data()[i]) << i;
 }
 
+TEST(Posterior, WhatATipsFitChangesIsADoubtOfHeights) {
+  const test::SmallScene scene;
+  const Objective o = make_objective(scene, Images::both);
+  Unknowns at = start_at(scene, o);
+  for (double& t : at.tip) t *= 5;  // by more than noise explains
+  const Curvature a = expected_curvature(o, at, 1, 1, Precision::double_always, {});
+  const Step by_tip = change_by_tip(o, at, a, {});
+  EXPECT_EQ(by_tip.tip, TipChange{});
+  // With the tip put back, everything else is at its optimum again.
+  Step tip = o.zero();
+  tip.tip = at.tip;
+  Step whole = by_tip;
+  add(whole, -1, tip);
+  Step alone = o.product(at, a.state, tip, &a.near), left = o.product(at, a.state, whole, &a.near);
+  alone.tip = left.tip = {};
+  EXPECT_LT(dot(left, a.preconditioner->solve(left)),
+            0.01 * dot(alone, a.preconditioner->solve(alone)));
+
+  const Grid<double> deviation =
+      posterior(o, at, 6, 1, 1, Precision::double_always, {}).deviation_nm;
+  Grid<double> squares = by_tip.z_nm;
+  for (double& v : squares.data()) v *= v;
+  squares = GaussianBasis(3, 1).sum(squares);
+  for (std::size_t i = 0; i < deviation.size(); ++i)
+    ASSERT_GE(1.02 * deviation.data()[i], std::sqrt(squares.data()[i])) << i;
+}
+
 TEST(SemTerm, NearDoesToWavesOfTwelveSamplesWhatTheModelDoes) {
   const test::SmallScene scene;
   const Objective o = make_objective(scene, Images::sem);

@@ -13,8 +13,8 @@ template <class Job>
 void describe_common(ParameterVisitor& visit, Job& job) {
   describe_folder(visit, job.folder, "Folder for the chart and what it is made from");
   visit(job.quick, {.name = "chart.quick",
-                    .help = "Few settings of each method, and small trainings; of scenes, a finest "
-                            "accuracy of 3% and fewer primaries"});
+                    .help = "Make a quick chart: few settings of each method, small trainings, a "
+                            "finest accuracy of 3% and fewer primaries"});
   describe_names(visit, job.families,
                  {.name = "chart.methods",
                   .help = "Methods to chart, of those below, with commas between "

@@ -5,18 +5,20 @@
 namespace surf::workflow {
 
 void describe(ParameterVisitor& visit, CompareParameters& p) {
-  visit(p.registered, {.name = "compare.registered",
-                       .help = "The places that both files state agree: no shift is searched for"});
+  visit(p.registered,
+        {.name = "compare.registered",
+         .help = "Take the positions that both files state, without searching for a shift"});
   visit(p.largest_shift_nm, {.name = "compare.largest_shift",
-                             .help = "Farthest shift along x and y that is searched for",
+                             .help = "Largest shift along x and y that is searched for",
                              .unit = Unit::nm,
                              .limits = at_least(0),
                              .otherwise = "as far as enough overlaps"});
-  visit(p.least_overlap, {.name = "compare.least_overlap",
-                          .help = "Share of the smaller surface that must lie in the other",
-                          .unit = Unit::share,
-                          .limits = above(0, 1),
-                          .level = Level::advanced});
+  visit(p.least_overlap,
+        {.name = "compare.least_overlap",
+         .help = "Least share of the smaller surface that must overlap with the other",
+         .unit = Unit::share,
+         .limits = above(0, 1),
+         .level = Level::advanced});
   visit(p.before_deviation_nm, {.name = "compare.before_deviation",
                                 .help = "Standard deviation of the errors of heights before",
                                 .unit = Unit::nm,
@@ -32,7 +34,7 @@ void describe(ParameterVisitor& visit, CompareParameters& p) {
                          .unit = Unit::share,
                          .limits = within(0.001, 0.5)});
   visit(p.largest_nm, {.name = "compare.largest_window",
-                       .help = "Side of the largest window that is looked through for changes",
+                       .help = "Side of the largest window that is searched for changes",
                        .unit = Unit::nm,
                        .limits = above(0),
                        .otherwise = "a quarter of the view, at most 64 samples"});
@@ -42,15 +44,15 @@ void describe(ParameterVisitor& visit, CompareParameters& p) {
                         .form = "SAMPLES",
                         .level = Level::advanced});
   visit(p.simulations, {.name = "compare.simulations",
-                        .help = "Fields of noise that are simulated; 0: 20 over the rate of false "
-                                "alarms, at least 400",
+                        .help = "Number of simulated noise fields; 0: 20 divided by the rate of "
+                                "false alarms, at least 400",
                         .limits = within(0, 1'000'000),
                         .level = Level::advanced});
-  visit(p.model_error, {.name = "compare.model_error",
-                        .help = "What a predicted SEM image may be off by, as a share of its "
-                                "contrast",
-                        .unit = Unit::share,
-                        .limits = within(0, 1)});
+  visit(p.model_error,
+        {.name = "compare.model_error",
+         .help = "Expected error of a predicted SEM image, as a share of its contrast",
+         .unit = Unit::share,
+         .limits = within(0, 1)});
   visit(p.seed,
         {.name = "compare.seed", .help = "Seed of the simulated noise", .level = Level::advanced});
 }

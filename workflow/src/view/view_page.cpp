@@ -57,15 +57,17 @@ std::string unique_name(const io::WebPage& page, const std::string& name) {
 }  // namespace
 
 void describe(ParameterVisitor& visit, ViewParameters& p) {
-  visit(p.mesh_tolerance_nm, {.name = "view.mesh_tolerance",
-                              .help = "Fewer triangles, nowhere farther off than this",
-                              .unit = Unit::nm,
-                              .limits = above(0),
-                              .otherwise = "all"});
-  visit(p.every, {.name = "view.every",
-                  .help = "Step of the samples of height fields that are shown: 2 is every "
-                          "second one",
-                  .limits = within(1, 1'000'000)});
+  visit(p.mesh_tolerance_nm,
+        {.name = "view.mesh_tolerance",
+         .help = "Simplify to fewer triangles, moving the surface nowhere by more than this",
+         .unit = Unit::nm,
+         .limits = above(0),
+         .otherwise = "all"});
+  visit(
+      p.every,
+      {.name = "view.every",
+       .help = "Step between the samples of height fields that are shown: 2 shows every second one",
+       .limits = within(1, 1'000'000)});
 }
 
 HeightField every_sample(const HeightField& field, int step) {
