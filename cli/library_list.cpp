@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
-#include <set>
 
 #include "library.h"
 #include "options.h"
@@ -13,6 +12,7 @@
 #include "surf/io/cache.h"
 #include "surf/workflow/library_build.h"
 #include "surf/workflow/library_list.h"
+#include "surf/workflow/library_remove.h"
 #include "terminal.h"
 
 namespace surf::cli {
@@ -112,92 +112,18 @@ int list(const BoundParameters& bound, bool check) {
   return 0;
 }
 
-/// Which libraries are removed.
-struct Removal {
-  std::vector<std::string> materials;
-  std::vector<double> energies_ev;
-  bool all = false, damaged = false, dry_run = false;
-};
-
-void describe(ParameterVisitor& visit, Removal& r) {
-  visit(r.materials, {.name = "library.materials",
-                      .help = "Materials whose libraries are removed",
-                      .form = "MATERIAL"});
-  visit.form(
-      {.name = "library.energy",
-       .help = "Beam energies whose libraries are removed",
-       .form = "ENERGY,..."},
-      [] { return std::string(); },
-      [&](std::string_view text, const std::string& subject) {
-        r.energies_ev = workflow::parse_energies_ev(text, subject);
-      });
-  visit(r.all, {.name = "library.all", .help = "Remove all, and what is damaged"});
-  visit(r.damaged,
-        {.name = "library.damaged", .help = "Remove what cannot be used because it is damaged"});
-  visit(r.dry_run, {.name = "library.dry_run", .help = "Only say what would be removed"});
-}
-
-// Names that no library has are mistakes: the materials themselves may be long gone.
-void check_names(const std::vector<std::string>& wanted, const LibraryList& list) {
-  std::set<std::string> names;
-  for (const StoredLibrary& l : list.libraries) names.insert(l.name.material);
-  for (const std::string& name : wanted) {
-    if (names.contains(name)) continue;
-    const std::string guess = nearest(name, {names.begin(), names.end()});
-    throw UsageError(
-        name, "there is no library of it",
-        guess.empty() ? "See 'semsurf library list'" : fmt::format("Did you mean {}?", guess));
-  }
-}
-
-bool is_wanted(const StoredLibrary& l, const Removal& r) {
-  if (r.all) return true;
-  if (r.materials.empty() && r.energies_ev.empty()) return false;
-  const auto same = [&](double e) { return std::abs(e - l.name.beam_energy_ev) < 1e-6 * e; };
-  return (r.materials.empty() || std::ranges::count(r.materials, l.name.material) > 0) &&
-         (r.energies_ev.empty() || std::ranges::any_of(r.energies_ev, same));
-}
-
 int remove(const BoundParameters& bound) {
-  Removal r;
-  bound.apply(r);
-  const bool some = !r.materials.empty() || !r.energies_ev.empty();
-  if (!some && !r.all && !r.damaged)
-    throw UsageError("library remove", "what to remove is not given",
-                     "Name materials or --energy, or say --all or --damaged");
-  if (some && r.all)
-    throw UsageError("`library.all`", "it is more than what is named", "Leave out one of the two");
+  workflow::LibraryRemoval removal;
+  bound.apply(removal);
   io::Cache cache = open_cache(bound);
-  // What is asked for as damaged has to be looked at whole.
-  const LibraryList list = workflow::list_libraries(
-      cache, r.damaged ? io::Cache::Check::everything : io::Cache::Check::header);
-  check_names(r.materials, list);
-  std::size_t files = 0, stuck = 0;
-  double bytes = 0;
-  const auto drop = [&](const std::vector<io::CacheEntry>& entries) {
-    for (const io::CacheEntry& entry : entries) {
-      if (!r.dry_run && !cache.remove(entry)) {
-        ++stuck;
-        continue;
-      }
-      ++files;
-      bytes += double(entry.bytes);
-    }
-  };
-  for (const StoredLibrary& l : list.libraries) {
-    if (!is_wanted(l, r)) continue;
+  const workflow::RemovedLibraries removed = workflow::remove_libraries(cache, removal);
+  for (const StoredLibrary& l : removed.libraries)
     print("{}, {} cascades, {}\n", workflow::library_title(l.name.material, l.name.beam_energy_ev),
           l.cascades, format_bytes(double(l.bytes)));
-    drop(l.pages);
-  }
-  if (r.damaged || r.all) drop(list.damaged);
-  if (stuck > 0)
-    throw FileError(cache.folder().string(), fmt::format("{} files cannot be removed", stuck),
-                    "Check the folder's permissions");
-  if (files == 0) print("nothing to remove in {}\n", cache.folder().string());
+  if (removed.files == 0) print("nothing to remove in {}\n", cache.folder().string());
   else
-    print("{} {} in {} file{}\n", r.dry_run ? "would free" : "freed", format_bytes(bytes), files,
-          files == 1 ? "" : "s");
+    print("{} {} in {} file{}\n", removal.dry_run ? "would free" : "freed",
+          format_bytes(removed.bytes), removed.files, removed.files == 1 ? "" : "s");
   return 0;
 }
 
@@ -223,7 +149,7 @@ void add_library_remove(CLI::App& library, Action& action) {
   CLI::App* sub = library.add_subcommand("remove", "Remove libraries from the cache");
   bound->looks["library.materials"] = {.name = "MATERIAL", .positional = true};
   bound->looks["library.dry_run"] = {.name = "-n,--dry-run"};
-  bound->add<Removal>(*sub, "Options");
+  bound->add<workflow::LibraryRemoval>(*sub, "Options");
   add_cache_option(*sub, *bound);
   sub->group("Commands");
   sub->footer(remove_examples);

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/core/words.h"
@@ -17,19 +15,6 @@ mc::ScanRequest::Region parse_region(std::string_view text, std::string_view sub
                      "Give the outer edges X0,Y0,X1,Y1, as -96,-96,96,96");
   return {parse_length_nm(parts[0], subject), parse_length_nm(parts[1], subject),
           parse_length_nm(parts[2], subject), parse_length_nm(parts[3], subject)};
-}
-
-std::string nearest(const std::string& word, const std::vector<std::string>& candidates) {
-  std::string best;
-  std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
-  for (const std::string& candidate : candidates) {
-    const std::size_t distance = edit_distance(word, candidate);
-    if (distance < least) {
-      least = distance;
-      best = candidate;
-    }
-  }
-  return best;
 }
 
 }  // namespace surf::cli

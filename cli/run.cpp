@@ -24,6 +24,7 @@
 #include "options.h"
 #include "run.h"
 #include "surf/core/error.h"
+#include "surf/core/nearest.h"
 #include "surf/core/field_words.h"
 #include "surf/core/try_thread.h"
 #include "surf/core/words.h"

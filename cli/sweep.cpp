@@ -16,6 +16,7 @@
 #include "options.h"
 #include "simulate_options.h"
 #include "surf/core/error.h"
+#include "surf/core/nearest.h"
 #include "surf/workflow/specimen_reader.h"
 #include "surf/workflow/sweep_grid.h"
 #include "surf/workflow/sweep_job.h"

@@ -33,6 +33,7 @@
 #include "surf/mesh/repair_mesh.h"
 #include "surf/mesh/simplify_mesh.h"
 #include "surf/workflow/calibrate_job.h"
+#include "surf/workflow/compare_job.h"
 #include "surf/workflow/certainty_job.h"
 #include "surf/workflow/clean_job.h"
 #include "surf/workflow/estimate_job.h"
@@ -93,6 +94,7 @@ const std::map<std::string, std::function<std::vector<Described>()>>& structs() 
       {"reconstruct", described_reconstruction},
       {"profile", described<workflow::ProfileJob>},
       {"calibrate", described<workflow::CalibrateParameters>},
+      {"compare", described<workflow::CompareParameters>},
       {"repair", described<RepairOptions>},
       {"simplify", described<SimplifyOptions>},
       {"tip_shape", described<workflow::TipShape>},

@@ -20,12 +20,14 @@ from . import _semsurf
 from ._errors import Doubt, Error, FileError, Interrupted, InvalidInput, UsageError, Unsupported
 from ._place import MODULES as _MODULES
 from ._results import Findings
-from ._semsurf import (HeightField, Image, Mesh, Tip, __version__, build_libraries, calibrate, certainty, chart,
-                      check_mesh, clean, close, compare, dilate, erode, estimate, info, level, libraries, materials,
-                      mesh_heights, noise, noise_counts, noise_sem, open, predict, profile, read_bodies,
-                      read_heights, read_image, read_mesh, read_sem_image, read_tip, reconstruct, refine, register,
-                      repair_mesh, sample, simplify, simulate, smooth, solid, survey, sweep, tip, train, view,
-                      write_heights, write_image, write_mesh, write_tip)
+from ._semsurf import (HeightField, Image, Mesh, Tip, __version__, build_libraries, calibrate,
+                      certainty, chart, check_mesh, clean, close, compare, dilate, erode, estimate,
+                      info, level, libraries, materials, mesh_heights, noise, noise_counts,
+                      noise_sem, open, predict, profile, read_bodies, read_heights, read_image,
+                      read_mesh, read_sem_image, read_tip, reconstruct, refine, register,
+                      remove_libraries, repair_mesh, sample, simplify, simulate, smooth, solid,
+                      survey, sweep, tip, train, view, write_heights, write_image, write_mesh,
+                      write_tip)
 
 # Where the libraries are that are loaded when they are needed.
 _semsurf.set_module_folder(_os.path.normpath(_os.path.join(_os.path.dirname(__file__), _MODULES)))

@@ -225,6 +225,7 @@ def simulate(
     specimen: PathLike | Mesh | HeightField | ArrayLike | Sequence,
     *,
     dry_run: bool | None = None,
+    acceptance: dict[str, Any] | None = None,
     progress: bool | Callable[[float, float, str], object] | None = None,
     material: str | None = None,
     materials: PathLike | Sequence[PathLike] | None = None,
@@ -837,6 +838,18 @@ def build_libraries(
     """Make libraries of cascades and keep them in the cache."""
 
 
+def remove_libraries(
+    material: str | Sequence[str] | None = None,
+    *,
+    energy: str | float | Sequence | None = None,
+    all: bool = False,
+    damaged: bool = False,
+    dry_run: bool = False,
+    cache: PathLike | None = None,
+) -> Findings:
+    """Remove libraries of cascades from the cache."""
+
+
 def calibrate(
     image: PathLike | Image | ArrayLike,
     simulated: PathLike | Image,
@@ -1060,6 +1073,7 @@ def write_mesh(
     *,
     scalars: dict[str, ArrayLike | Image | tuple[Image, str]] | None = None,
     drape: Image | PathLike | tuple[Image, str] | None = None,
+    tracks: Sequence[Findings] | PathLike | None = None,
     unit: str | None = None,
 ) -> None:
     """Write a mesh, or several, to a file."""

@@ -11,6 +11,7 @@
 #include "surf/workflow/library_build.h"
 #include "surf/workflow/library_list.h"
 #include "surf/workflow/library_parameters.h"
+#include "surf/workflow/library_remove.h"
 
 namespace surf::python {
 namespace {
@@ -109,6 +110,24 @@ py::object build(const Call& call) {
   return all;
 }
 
+py::object remove(const Call& call) {
+  auto removal = call.told<workflow::LibraryRemoval>();
+  if (call.has("material")) removal.materials = names_of(call["material"]);
+  io::Cache cache(parameters_of(call).cache);
+  workflow::RemovedLibraries removed;
+  {
+    const py::gil_scoped_release unlocked;
+    removed = workflow::remove_libraries(cache, removal);
+  }
+  py::list libraries;
+  for (const workflow::StoredLibrary& l : removed.libraries) libraries.append(found_of(l));
+  py::dict d;
+  d["libraries"] = libraries;
+  d["files"] = removed.files;
+  d["bytes"] = removed.bytes;
+  return findings(d);
+}
+
 const std::vector<std::string> all_but_cache{
     "library.energy",    "library.cascades", "library.accuracy", "simulation.physics",
     "simulation.cutoff", "simulation.seed",  "job.threads"};
@@ -133,6 +152,17 @@ void add_libraries(py::module_& module) {
   b.result = "For each library its `title`, `cascades`, how many were `made` now, and `bytes`.";
   b.example = ">>> semsurf.build_libraries('Si', energy='500eV,1keV')";
   define(module, b, build);
+
+  Function r{.name = "remove_libraries", .summary = "Remove libraries of cascades from the cache."};
+  r.details = "Simulations make them again where they are needed.";
+  r.arguments = {{"material", "str | Sequence[str]", "Materials by name.", false, false}};
+  add_keywords(r.keywords, workflow::LibraryRemoval{}, {"library.materials"});
+  add_keywords(r.keywords, workflow::LibraryParameters{}, all_but_cache);
+  r.result_type = "Findings";
+  r.result = "`libraries` that were removed, or would be by `dry_run`, `files` and `bytes`.";
+  r.is_long = false;
+  r.example = ">>> semsurf.remove_libraries('Si', energy='5keV')";
+  define(module, r, remove);
 }
 
 }  // namespace surf::python

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "acceptances.h"
 #include "arrays.h"
 #include "specimens.h"
 #include "surf/core/error.h"
@@ -30,27 +31,38 @@ py::list tracks_of(const std::vector<Track>& tracks) {
     d["kind"] = name_of(track.kind);
     d["secondary"] = track.secondary;
     d["electron"] = track.electron;
+    d["number"] = track.number;
+    d["parent"] = track.parent;
+    d["generation"] = track.generation;
+    d["materials"] = array_of(track.material);
     all.append(findings(d));
   }
   return all;
 }
 
+/// What is not text: the specimen's shapes, and detectors that are functions.
+struct InMemory {
+  io::ShapesInMemory shapes;
+  std::vector<mc::Detector> detectors;
+};
+
 /// The job's scene, with notes about it.
 void take_scene(workflow::SimulateJob& job, const io::SpecimenRequest& request,
-                const io::ShapesInMemory& shapes, const Call& call,
-                const workflow::Reporter& reporter) {
-  job.scene = io::read_specimen(request, shapes, workflow::specimen_reader());
+                const InMemory& memory, const Call& call, const workflow::Reporter& reporter) {
+  job.scene = io::read_specimen(request, memory.shapes, workflow::specimen_reader());
   for (const std::string& note : job.scene.notes) reporter.note(note);
   call.apply(static_cast<mc::SimulationRequest&>(job.scene));
+  job.scene.detectors.insert(job.scene.detectors.end(), memory.detectors.begin(),
+                             memory.detectors.end());
 }
 
 class Simulation {
  public:
   explicit Simulation(workflow::SimulateJob job) : job_(std::move(job)) {}
 
-  void run(const io::SpecimenRequest& request, const io::ShapesInMemory& shapes, const Call& call,
+  void run(const io::SpecimenRequest& request, const InMemory& memory, const Call& call,
            const workflow::Reporter& reporter) {
-    take_scene(job_, request, shapes, call, reporter);
+    take_scene(job_, request, memory, call, reporter);
     summary_ = workflow::run(job_, reporter);
     for (const std::filesystem::path& file : summary_.written)
       if (file.string().ends_with(".tracks.vtp")) summary_.tracks = io::read_tracks(file);
@@ -92,11 +104,11 @@ py::object Simulation::result() {
 }
 
 py::object foretold(workflow::SimulateJob job, const io::SpecimenRequest& request,
-                    const io::ShapesInMemory& shapes, const Call& call) {
+                    const InMemory& memory_of_caller, const Call& call) {
   constexpr double seconds = 10;
   workflow::DryRun dry;
   call.work([&](const workflow::Reporter& reporter) {
-    take_scene(job, request, shapes, call, reporter);
+    take_scene(job, request, memory_of_caller, call, reporter);
     dry = workflow::dry_run(std::move(job), 1, seconds, reporter);
   });
   py::dict d, memory, disk;
@@ -123,13 +135,14 @@ py::object simulate(const Call& call) {
   call.apply(job);  // numbers first: a wrong one does not wait for a large mesh
   job.command_line = "semsurf.simulate(...) in Python";
   auto request = call.told<io::SpecimenRequest>();
-  io::ShapesInMemory shapes;
-  add_specimen(call["specimen"], request, shapes);
+  InMemory memory;
+  add_specimen(call["specimen"], request, memory.shapes);
+  if (call.has("acceptance")) memory.detectors = detectors_of(call["acceptance"]);
   if (const py::object dry = call["dry_run"]; !dry.is_none() && py::bool_(dry))
-    return foretold(std::move(job), request, shapes, call);
+    return foretold(std::move(job), request, memory, call);
   Simulation simulation(std::move(job));
   call.work(
-      [&](const workflow::Reporter& reporter) { simulation.run(request, shapes, call, reporter); },
+      [&](const workflow::Reporter& reporter) { simulation.run(request, memory, call, reporter); },
       [&] { return simulation.result(); });
   return simulation.result();
 }
@@ -145,7 +158,13 @@ void add_simulate(py::module_& module) {
   f.arguments = {specimen_argument,
                  {"dry_run", "bool",
                   "Simulate a part for ten seconds, and tell what the whole would take, as "
-                  "Findings."}};
+                  "Findings."},
+                 {"acceptance", "dict[str, Any]",
+                  "Detectors of your own, by name: for each a function of arrays, `f(energy_ev, "
+                  "direction)`, that returns the probability that electrons are counted, 0 to 1. "
+                  "`direction[..., 0]` to `direction[..., 2]` are x, y and z (up). The function is "
+                  "called once, for the middles of bins: 90 polar angles, 72 azimuths and, from 0 "
+                  "eV to 30 keV, bins of 1 eV or 5 %; `(f, edges_ev)` sets others."}};
   f.takes<io::SpecimenRequest>({}, {"specimen.input"}).takes<workflow::SimulateJob>();
   f.result_type = "Image";
   f.result =

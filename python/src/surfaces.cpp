@@ -4,12 +4,16 @@
 
 #include <cmath>
 
+#include <pybind11/stl.h>
+
 #include "arrays.h"
 #include "data.h"
 #include "surf/core/error.h"
+#include "surf/core/track.h"
 #include "surf/io/mesh_file.h"
 #include "surf/io/sim/specimen_request.h"
 #include "surf/io/surface_file.h"
+#include "surf/io/tracks_file.h"
 #include "surf/workflow/image_sampler.h"
 
 namespace surf::python {
@@ -47,6 +51,55 @@ VertexScalar scalar_of(const std::string& name, const py::object& given, const T
   return scalar;
 }
 
+TrackKind kind_of(const std::string& name) {
+  for (const TrackKind kind : {TrackKind::absorbed, TrackKind::se, TrackKind::bse,
+                               TrackKind::transmitted, TrackKind::lost})
+    if (name == name_of(kind)) return kind;
+  throw InvalidInput("tracks", fmt::format("there is no kind '{}'", name),
+                     "Give absorbed, se, bse, transmitted or lost");
+}
+
+/// A track as a simulation finds it.
+Track track_of(const py::handle& given) {
+  using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+  if (!PyDict_Check(given.ptr()))
+    throw InvalidInput("tracks", "one is no track",
+                       "Give `found.tracks` of a simulation, or a .vtp file");
+  const auto d = py::reinterpret_borrow<py::dict>(given);
+  for (const char* key : {"points", "energies", "kind", "secondary", "electron", "number", "parent",
+                          "generation", "materials"})
+    if (!d.contains(key))
+      throw InvalidInput("tracks", fmt::format("one has no '{}'", key),
+                         "Give `found.tracks` of a simulation, or a .vtp file");
+  Track track;
+  const Numbers points = Numbers::ensure(d["points"]);
+  if (!points) PyErr_Clear();
+  if (!points || points.ndim() != 2 || points.shape(1) != 3)
+    throw InvalidInput("tracks", "points are no array of N x 3 numbers", "Give x, y and z in nm");
+  for (py::ssize_t i = 0; i < points.shape(0); ++i)
+    track.points_nm.push_back({points.at(i, 0), points.at(i, 1), points.at(i, 2)});
+  track.energy_ev = d["energies"].cast<std::vector<double>>();
+  track.material = d["materials"].cast<std::vector<int>>();
+  track.kind = kind_of(py::str(d["kind"]));
+  track.secondary = d["secondary"].cast<bool>();
+  track.electron = d["electron"].cast<std::int64_t>();
+  track.number = d["number"].cast<int>();
+  track.parent = d["parent"].cast<int>();
+  track.generation = d["generation"].cast<int>();
+  validate(track, "tracks");
+  return track;
+}
+
+std::vector<Track> tracks_of(const py::object& given) {
+  if (is_path(given)) return io::read_tracks(path_of(given));
+  std::vector<Track> tracks;
+  if (!PyList_Check(given.ptr()) && !PyTuple_Check(given.ptr()))
+    throw InvalidInput("tracks", "it is no list",
+                       "Give `found.tracks` of a simulation, or a .vtp file");
+  for (const py::handle one : given) tracks.push_back(track_of(one));
+  return tracks;
+}
+
 /// What is written, by name: one mesh, a list, or a dictionary.
 std::vector<Mesh> bodies_of(const py::object& given) {
   std::vector<Mesh> bodies;
@@ -71,7 +124,7 @@ py::object write_mesh(const Call& call) {
   const std::string path = path_of(call["path"]);
   const double unit_nm = call.told<io::SpecimenRequest>().mesh_unit_nm.value_or(1);
   const std::vector<Mesh> bodies = bodies_of(call["mesh"]);
-  const bool carries = call.has("scalars") || call.has("drape");
+  const bool carries = call.has("scalars") || call.has("drape") || call.has("tracks");
   if (!carries && bodies.size() == 1) {
     const py::gil_scoped_release unlocked;
     io::write_mesh(path, bodies.front().mesh, unit_nm);
@@ -85,6 +138,7 @@ py::object write_mesh(const Call& call) {
   };
   if (call.has("scalars")) refuse(format.scalars, "scalars", "scalars");
   if (call.has("drape")) refuse(format.drape, "drape", "pictures");
+  if (call.has("tracks")) refuse(format.tracks, "tracks", "tracks");
   if (unit_nm != 1) throw UsageError("`specimen.unit`", "it is for a mesh alone", "Leave it out");
   SurfaceScene scene;
   for (const Mesh& body : bodies) {
@@ -104,6 +158,7 @@ py::object write_mesh(const Call& call) {
     }
     scene.surfaces.push_back(std::move(surface));
   }
+  if (call.has("tracks")) scene.tracks = tracks_of(call["tracks"]);
   scene.metadata = bodies.front().record;
   const py::gil_scoped_release unlocked;
   io::write_surfaces(path, scene);
@@ -151,7 +206,9 @@ void add_surfaces(py::module_& module) {
       {"scalars", "dict[str, ArrayLike | Image | tuple[Image, str]]",
        "Values by name: an array with one for each vertex, or an image or (image, channel) that "
        "lies over the mesh."},
-      {"drape", "Image | PathLike | tuple[Image, str]", "A picture to lay on the mesh."}};
+      {"drape", "Image | PathLike | tuple[Image, str]", "A picture to lay on the mesh."},
+      {"tracks", "Sequence[Findings] | PathLike",
+       "Paths of electrons, the `tracks` that a simulation found, or a .vtp file of them."}};
   w.result_type = "None", w.result = "Nothing.";
   w.is_long = false;
   w.example =

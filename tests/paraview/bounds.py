@@ -50,6 +50,7 @@ def cases():
     yield "Reconstruct", lambda: simple.Reconstruct(Input=scan, SEM=sem, Tip=probe, Material="Si", UseTransform=1), False
     yield "Profile", lambda: simple.MeasureProfile(Input=sem, Height=20), False
     yield "Calibrate", lambda: simple.CalibrateSEM(Input=sem, Simulated=sem, Offset="-1", Black="-1"), True
+    yield "Compare", lambda: simple.CompareSurfaces(Input=scan, After=scan, Simulations=50), True
     yield "Predict", lambda: simple.PredictSEM(Input=scan, ModelFile=MODEL), True
     yield "Estimate", lambda: simple.EstimateSEM(Input=sem), False
     yield "Drape", lambda: simple.DrapeImageonSurface(Input=sheet, Image=scan), True

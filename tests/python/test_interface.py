@@ -21,7 +21,7 @@ FUNCTIONS = [f["name"] for f in semsurf._semsurf.described_functions()]
 NO_KEYWORDS = {
     "help", "quiet", "output",
     "step", "substrate-mask", "eroded", "plot", "also", "csv",                 # results and lists are objects here
-    "dry-run", "no-level", "afm-noise",
+    "no-level", "afm-noise",
     "repair", "scale", "smooth", "solid", "thickness", "plain", "scalar", "drape", "tracks", "out-unit",
     "list",                                                                    # what a call without a name gives
     "magnification", "true-size", "z-exaggeration", "pixel-size",              # steps of `semsurf mesh`
@@ -32,7 +32,8 @@ COMMANDS = {"simulate": ["simulate"], "level": ["level"], "clean": ["clean"], "t
             "register": ["register"], "reconstruct": ["reconstruct"], "profile": ["profile"], "compare": ["compare"],
             "refine": ["refine"],
             "survey": ["survey"], "sample": ["sample"], "sweep": ["sweep"], "chart": ["chart"], "view": ["view"],
-            "noise_counts": ["noise", "counts"], "build_libraries": ["library", "build"]}
+            "noise_counts": ["noise", "counts"], "build_libraries": ["library", "build"],
+            "remove_libraries": ["library", "remove"]}
 
 
 @pytest.mark.parametrize("name", COMMANDS)

@@ -85,6 +85,21 @@ def test_libraries_are_built_and_listed(tmp_path):
         semsurf.build_libraries("Sii")
 
 
+def test_libraries_are_removed(tmp_path):
+    semsurf.build_libraries("Si", energy="500eV,1keV", cascades=2048)
+    foretold = semsurf.remove_libraries("Si", energy="1keV", dry_run=True)
+    assert len(semsurf.libraries().libraries) == 2
+    removed = semsurf.remove_libraries("Si", energy="1keV")
+    assert removed.files == foretold.files > 0 and removed.bytes == foretold.bytes > 0
+    assert [one.energy_ev for one in semsurf.libraries().libraries] == [500]
+    with pytest.raises(semsurf.UsageError, match="Did you mean Si"):
+        semsurf.remove_libraries("Sj")
+    with pytest.raises(semsurf.UsageError, match="not given"):
+        semsurf.remove_libraries()
+    assert len(semsurf.remove_libraries(all=True).libraries) == 1
+    assert semsurf.libraries().libraries == []
+
+
 def test_a_page_shows_objects_and_files(tmp_path, heights, cube, samples):
     image = semsurf.simulate(heights, material="Si", size=(16, 12), electrons=5)
     semsurf.write_heights(tmp_path / "scan.gsf", heights)

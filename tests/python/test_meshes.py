@@ -4,7 +4,7 @@ import numpy
 import pytest
 
 import semsurf
-from conftest import CUBE, FACES
+from conftest import CUBE, FACES, same_bytes
 
 
 def test_check(cube):
@@ -69,7 +69,27 @@ def test_several_bodies_with_values_and_a_picture(tmp_path, cube, samples):
     assert seen == pytest.approx((cube.vertices[:, 1] + 5) / 10)       # between pixels in proportion
 
 
+def test_tracks_go_along(tmp_path, program, cube):
+    image = semsurf.simulate(cube, material="Si", substrate="Si", size=(16, 12), electrons=5, trajectories=4,
+                             output=tmp_path / "cube.exr")
+    semsurf.write_mesh(tmp_path / "ours.glb", cube, tracks=image.found.tracks)
+    semsurf.write_mesh(tmp_path / "file.glb", cube, tracks=tmp_path / "cube.tracks.vtp")
+    assert same_bytes(tmp_path / "ours.glb", tmp_path / "file.glb")
+    semsurf.write_mesh(tmp_path / "none.glb", cube, scalars={"a": numpy.zeros(8)})
+    assert (tmp_path / "ours.glb").stat().st_size > (tmp_path / "none.glb").stat().st_size + 1000
+
+
+@pytest.mark.parametrize("tracks, what", [
+    ([1], "one is no track"), (3, "no list"), ([{"points": [[0, 0, 0]]}], "has no 'energies'"),
+])
+def test_what_is_no_track(tmp_path, cube, tracks, what):
+    with pytest.raises(semsurf.InvalidInput, match=what):
+        semsurf.write_mesh(tmp_path / "a.glb", cube, tracks=tracks)
+    assert not (tmp_path / "a.glb").exists()
+
+
 @pytest.mark.parametrize("name, keywords, what", [
+    ("a.stl", {"tracks": []}, "hold no tracks"),
     ("a.stl", {"scalars": {"a": numpy.zeros(8)}}, "hold no scalars"),
     ("a.ply", {"scalars": {"a": numpy.zeros(7)}}, "8 numbers"),
     ("a.ply", {"scalars": {"a": numpy.full(8, numpy.nan)}}, "says nothing"),

@@ -107,3 +107,52 @@ def test_no_specimen():
 
 def test_threads_change_nothing(samples):
     same_image(*(semsurf.simulate(samples / "rough.toml", threads=threads, **QUICK) for threads in (1, 2)))
+
+
+def test_a_function_is_a_detector(samples):
+    calls = []
+
+    def lower_left(energy_ev, direction):
+        calls.append(energy_ev.shape)
+        assert direction.shape == (*energy_ev.shape, 3)
+        assert numpy.allclose((direction ** 2).sum(axis=-1), 1)
+        return (energy_ev < 50) & (direction[..., 0] < 0)
+
+    image = semsurf.simulate(samples / "cube.toml", detector="lower:energy=..50eV,sector=90deg..270deg,axis=0deg/0deg",
+                             acceptance={"own": lower_left, "all": (lambda energy, direction: 1, [0, 50])}, **QUICK)
+    assert len(calls) == 1                                              # tabulated, once
+    assert numpy.array_equal(image["all"], image["SE"])
+    assert numpy.array_equal(image["own"], image["lower"])              # bins of azimuth end at 90 and 270 degrees
+    assert "own:" in image.record["detector.4"] and "acceptance=" in image.record["detector.4"]
+
+
+def test_probabilities_thin_the_counts(samples):
+    image = semsurf.simulate(samples / "flat.toml", acceptance={"third": lambda energy, direction: (energy < 50) / 3},
+                             size=(16, 12), electrons=400, seed=3)
+    se, third = image.found.yields.SE, image.found.yields.third
+    electrons = 16 * 12 * 400
+    assert abs(third.value - se.value / 3) < 4 * numpy.sqrt(se.value * 2 / 9 / electrons)
+
+
+@pytest.mark.parametrize("acceptance, what", [
+    (lambda energy, direction: energy, "no dictionary"),
+    ({"own": 0.5}, "no function"),
+    ({"own": lambda energy, direction: energy[0]}, "number for each energy"),
+    ({"own": lambda energy, direction: 2 + 0 * energy}, "outside 0 to 1"),
+    ({"own": lambda energy, direction: numpy.nan * energy}, "outside 0 to 1"),
+    ({"own": (lambda energy, direction: 1, [50, 0])}, "do not rise"),
+    ({"own": (lambda energy, direction: 1, "wide")}, "no list of numbers"),
+    ({"a b": lambda energy, direction: 1}, "no name for a channel"),
+    ({"SE": lambda energy, direction: 1}, "given twice"),
+])
+def test_functions_that_are_no_detectors(samples, acceptance, what):
+    with pytest.raises(semsurf.UsageError, match=what):
+        semsurf.simulate(samples / "flat.toml", acceptance=acceptance, **QUICK)
+
+
+def test_what_a_detector_raises_comes_through(samples):
+    def broken(energy, direction):
+        raise KeyError("table")
+
+    with pytest.raises(KeyError, match="table"):
+        semsurf.simulate(samples / "flat.toml", acceptance={"own": broken}, **QUICK)

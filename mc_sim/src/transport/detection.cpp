@@ -48,6 +48,7 @@ Detection::Detection(const std::vector<Detector>& detectors, const Beam& beam, b
     : counts_(detectors.size()) {
   for (const Detector& d : detectors) {
     detectors_.push_back(compile(d, beam));
+    detectors_.back().stream = detectors_.size();
     if (with_spectra) spectra_.push_back(make_spectra(d, beam));
   }
 }
@@ -76,6 +77,7 @@ Detection::Compiled Detection::compile(const Detector& d, const Beam& beam) {
   c.max_cosine = d.min_angle_deg == 0 ? HUGE_VAL : cosine_of(d.min_angle_deg);
   c.from_turn_deg = d.from_azimuth_deg;
   c.to_turn_deg = d.to_azimuth_deg;
+  c.acceptance = d.acceptance;
   return c;
 }
 
@@ -92,8 +94,13 @@ bool Detection::accepts(const Compiled& d, const Escape& e) {
     const double cosine = dot(e.direction, d.axis);
     if (!(cosine >= d.min_cosine && cosine < d.max_cosine)) return false;
   }
-  if (d.whole_turn) return true;
-  const double turn = azimuth_deg(d, e.direction);
+  if (!d.whole_turn && !in_sector(d, e.direction)) return false;
+  return !d.acceptance || is_counted(probability(*d.acceptance, e.energy_ev, e.direction),
+                                     e.energy_ev, e.direction, d.stream);
+}
+
+bool Detection::in_sector(const Compiled& d, const Vec3& direction) {
+  const double turn = azimuth_deg(d, direction);
   return d.from_turn_deg < d.to_turn_deg ? turn >= d.from_turn_deg && turn < d.to_turn_deg
                                          : turn >= d.from_turn_deg || turn < d.to_turn_deg;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "surf/mc/transport/detector.h"
@@ -45,10 +47,13 @@ class Detection {
     Vec3 axis, across, up;
     double min_cosine, max_cosine;  // counted: min <= cosine < max
     double from_turn_deg, to_turn_deg;
+    std::shared_ptr<const Acceptance> acceptance;
+    std::uint64_t stream;  // of the acceptance's dice
   };
 
   static Compiled compile(const Detector& detector, const Beam& beam);
   static bool accepts(const Compiled& d, const Escape& e);
+  static bool in_sector(const Compiled& d, const Vec3& direction);
   static double azimuth_deg(const Compiled& d, const Vec3& direction);
   void count(std::size_t detector, const Escape& e);
   void touch(Histogram& histogram, double value);

@@ -163,6 +163,9 @@ void apply(Detector& d, const std::string& key, const std::string& value,
     d.origin = choose(value, origins, place);
   } else if (key == "efficiency") {
     d.efficiency = share(value, place);
+  } else if (key == "acceptance") {
+    throw UsageError(place, "a table of acceptance is no text",
+                     "Give it as a function in Python, or in C++");
   } else {
     throw UsageError(subject, fmt::format("there is no '{}'", key), keys);
   }
@@ -194,6 +197,7 @@ void check(const Detector& d) {
   if (!(d.efficiency > 0 && d.efficiency <= 1))
     throw UsageError(subject, fmt::format("an efficiency of {:g} is outside 0 to 1", d.efficiency),
                      "Give a share such as 0.8 or 80%");
+  if (d.acceptance) validate(*d.acceptance, subject);
 }
 
 template <class T>
@@ -240,11 +244,11 @@ std::string format_detector(const Detector& d) {
              : "beam";
   return fmt::format(
       "{}:energy={}eV..{},cone={}deg..{}deg,axis={},sector={}deg..{}deg,side={},origin={},"
-      "efficiency={}",
+      "efficiency={}{}",
       d.name, format_exact(d.min_energy_ev), upper, format_exact(d.min_angle_deg),
       format_exact(d.max_angle_deg), axis, format_exact(d.from_azimuth_deg),
       format_exact(d.to_azimuth_deg), word_of(d.side, sides), word_of(d.origin, origins),
-      format_exact(d.efficiency));
+      format_exact(d.efficiency), d.acceptance ? ",acceptance=" + hash_of(*d.acceptance) : "");
 }
 
 void validate(const std::vector<Detector>& detectors) {
@@ -259,7 +263,7 @@ void validate(const std::vector<Detector>& detectors) {
 
 bool looks_from_a_side(const Detector& d) {
   const bool sector = std::abs(d.to_azimuth_deg - d.from_azimuth_deg) < 360;
-  return sector || (d.axis && d.axis->polar_deg > 0 && d.axis->polar_deg < 180);
+  return d.acceptance || sector || (d.axis && d.axis->polar_deg > 0 && d.axis->polar_deg < 180);
 }
 
 Vec3 axis_direction(const Detector& d, const Beam& beam) {

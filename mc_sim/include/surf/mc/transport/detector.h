@@ -2,12 +2,14 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "surf/core/vec3.h"
 #include "surf/mc/geometry/beam.h"
+#include "surf/mc/transport/acceptance.h"
 
 namespace surf::mc {
 
@@ -40,6 +42,9 @@ struct Detector {
   double from_azimuth_deg = 0;  ///< about the axis: from <= azimuth < to, each 0 to 360;
   double to_azimuth_deg = 360;  ///< from > to goes through 0. Azimuth 0 is the image's x
   double efficiency = 1;        ///< share of those electrons that is counted, in (0, 1]
+  /// Which of those electrons are counted, besides, by a table; null: all. In text it is a hash,
+  /// which cannot be read back.
+  std::shared_ptr<const Acceptance> acceptance = nullptr;
 };
 
 /// The two that every simulation has, first: SE (below 50 eV, any direction) and BSE (from 50 eV,
