@@ -128,7 +128,7 @@ double quantile(std::vector<double> v, double share) {
   return v[static_cast<std::size_t>(share * double(v.size() - 1))];
 }
 
-/// A line of the tables in docs/explanation/registration.md: of all pairs how many have which
+/// A line of the tables in docs/development/registration_figures.md: of all pairs how many have which
 /// verdict, of the verified ones how far they are off.
 void print(const char* what, const std::vector<Row>& rows) {
   if (rows.empty()) return;
