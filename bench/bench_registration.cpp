@@ -128,8 +128,8 @@ double quantile(std::vector<double> v, double share) {
   return v[static_cast<std::size_t>(share * double(v.size() - 1))];
 }
 
-/// A line of the tables in docs/development/registration_figures.md: of all pairs how many have which
-/// verdict, of the verified ones how far they are off.
+/// A line of the tables in docs/development/registration_figures.md: of all pairs how many have
+/// which verdict, of the verified ones how far they are off.
 void print(const char* what, const std::vector<Row>& rows) {
   if (rows.empty()) return;
   int counts[4] = {}, with_rivals = 0, near = 0, within_one = 0, within_two = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of docs/development/materials_figures.md: SE and BSE yields of flat built-in materials at
-// normal incidence, with one standard error, beside measurements and formulas.
+// The table of docs/development/materials_figures.md: SE and BSE yields of flat built-in materials
+// at normal incidence, with one standard error, beside measurements and formulas.
 //   yields_of_materials ELECTRONS DATA/reference [ENERGY_KEV...]
 #include <cmath>
 #include <cstdlib>

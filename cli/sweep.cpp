@@ -53,11 +53,11 @@ struct Runs {
 };
 
 void describe(ParameterVisitor& visit, Runs& runs) {
-  describe_texts(
-      visit, runs.vary,
-      {.name = "sweep.vary",
-       .help = "Parameter to vary, as energy=500eV,1keV or tilt=0deg:60deg:5deg; all combinations are done",
-       .form = "NAME=VALUES"});
+  describe_texts(visit, runs.vary,
+                 {.name = "sweep.vary",
+                  .help = "Parameter to vary, as energy=500eV,1keV or tilt=0deg:60deg:5deg; all "
+                          "combinations are done",
+                  .form = "NAME=VALUES"});
   visit(runs.formats, {.name = "sweep.format",
                        .help = "Format of the images",
                        .otherwise = "exr",

@@ -160,9 +160,8 @@ void describe(ParameterVisitor& visit, TrainFiles& files) {
                                 "model then has its one signal",
                         .form = "FILE",
                         .file = FileRole::read});
-  describe_some(
-      visit, files.material,
-      {{"specimen.material", "Material of the surfaces", "Si"}, {"specimen.materials"}});
+  describe_some(visit, files.material,
+                {{"specimen.material", "Material of the surfaces", "Si"}, {"specimen.materials"}});
 }
 
 workflow::TrainJob make_train_job(const TrainOptions& o) {

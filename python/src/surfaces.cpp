@@ -64,13 +64,13 @@ Track track_of(const py::handle& given) {
   using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
   if (!PyDict_Check(given.ptr()))
     throw InvalidInput("tracks", "one is no track",
-                       "Give `found.tracks` of a simulation, or a .vtp file");
+                       "Give the tracks that a simulation found, or a .vtp file");
   const auto d = py::reinterpret_borrow<py::dict>(given);
   for (const char* key : {"points", "energies", "kind", "secondary", "electron", "number", "parent",
                           "generation", "materials"})
     if (!d.contains(key))
       throw InvalidInput("tracks", fmt::format("one has no '{}'", key),
-                         "Give `found.tracks` of a simulation, or a .vtp file");
+                         "Give the tracks that a simulation found, or a .vtp file");
   Track track;
   const Numbers points = Numbers::ensure(d["points"]);
   if (!points) PyErr_Clear();
@@ -95,7 +95,7 @@ std::vector<Track> tracks_of(const py::object& given) {
   std::vector<Track> tracks;
   if (!PyList_Check(given.ptr()) && !PyTuple_Check(given.ptr()))
     throw InvalidInput("tracks", "it is no list",
-                       "Give `found.tracks` of a simulation, or a .vtp file");
+                       "Give the tracks that a simulation found, or a .vtp file");
   for (const py::handle one : given) tracks.push_back(track_of(one));
   return tracks;
 }
