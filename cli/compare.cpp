@@ -174,7 +174,9 @@ void add_compare(CLI::App& app, Action& action, const std::string& command_line)
   with_role(sub->add_option("BEFORE", o->before, "A scan, a surface, or a mesh of what is expected")
                 ->type_name("FILE"),
             FileRole::read);
-  with_role(sub->add_option("AFTER", o->after, "A scan, a surface, a mesh or an SEM image of the later state")->type_name("FILE"),
+  with_role(sub->add_option("AFTER", o->after,
+                            "A scan, a surface, a mesh or an SEM image of the later state")
+                ->type_name("FILE"),
             FileRole::read);
   o->bound.headings = {{"compare", "Comparison"},
                        {"scan", "Files"},

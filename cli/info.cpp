@@ -212,7 +212,8 @@ void add_info(CLI::App& app, Action& action) {
   options->bound.add<io::SpecimenRequest>(*sub, "Options", {},
                                           {"specimen.unit", "specimen.override_unit"});
   options->bound.add<io::MaterialChoice>(*sub, "Options", {}, {"specimen.materials"});
-  sub->add_flag("--json", options->json, "Print JSON, a list of one object per file, in place of text")
+  sub->add_flag("--json", options->json,
+                "Print JSON, a list of one object per file, in place of text")
       ->group("Options");
   sub->footer(examples);
   sub->callback([options, &action] {

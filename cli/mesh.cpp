@@ -263,7 +263,8 @@ void add_mesh(CLI::App& app, Action& action) {
                 ->allow_extra_args(false)
                 ->group(shown),
             FileRole::read);
-  with_role(sub->add_option("--drape", o->drape, "Picture to drape over the surface, FILE or FILE:CHANNEL")
+  with_role(sub->add_option("--drape", o->drape,
+                            "Picture to drape over the surface, FILE or FILE:CHANNEL")
                 ->type_name("FILE")
                 ->group(shown),
             FileRole::read);
