@@ -140,7 +140,7 @@ void add_scan_options(CLI::App& app, Options& o, bool hidden) {
 
 void add_outputs(CLI::App& app, Options& o, bool hidden) {
   const char* group = hidden ? "" : "Output";
-  with_role(app.add_option("--plot", o.plot, "What was found, as a chart: .svg .png")
+  with_role(app.add_option("--plot", o.plot, "Chart of the results to write: .svg .png")
                 ->type_name("FILE")
                 ->group(group),
             FileRole::written);

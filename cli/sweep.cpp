@@ -195,10 +195,9 @@ int sweep(const Options& o, const std::string& command_line) {
 CLI::App* add_join(CLI::App& app, Action& action) {
   const auto folders = std::make_shared<std::vector<std::string>>();
   CLI::App* sub = app.add_subcommand("join", "One table from the parts of a sweep");
-  with_role(
-      sub->add_option("FOLDER", *folders, "Where 'semsurf sweep --part' wrote to, one or several")
-          ->type_name("FOLDER"),
-      FileRole::none);
+  with_role(sub->add_option("FOLDER", *folders, "Folders that 'semsurf sweep --part' wrote to")
+                ->type_name("FOLDER"),
+            FileRole::none);
   sub->footer("Writes sweep.csv into the first folder.\n\nExample:\n  semsurf sweep join mesa");
   sub->callback([folders, &action] {
     action = [folders] {

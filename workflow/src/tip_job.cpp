@@ -230,13 +230,14 @@ void describe_noise(ParameterVisitor& visit, std::optional<AfmNoise>& noise) {
 
 void describe(ParameterVisitor& visit, TipParameters& p) {
   visit(p.size, {.name = "tip.size", .help = "Samples across the tip, odd", .limits = sizes});
-  visit(p.answer, {"sweep", "outer", "best", "blind"},
-        {.name = "tip.answer",
-         .help = "What is found: the tip that the noise explains (sweep), an outer bound, the most "
-                 "likely one, or the "
-                 "one at a "
-                 "threshold (blind)",
-         .otherwise = "sweep; blind with a threshold"});
+  visit(
+      p.answer, {"sweep", "outer", "best", "blind"},
+      {.name = "tip.answer",
+       .help = "Answer to find: the tip that the noise explains (sweep), an outer bound, the most "
+               "likely one, or the "
+               "one at a "
+               "threshold (blind)",
+       .otherwise = "sweep; blind with a threshold"});
   describe_noise(visit, p.noise);
   visit(p.threshold_nm, {.name = "tip.threshold",
                          .help = "Threshold: samples of the tip are lowered only by more than this",
