@@ -79,8 +79,10 @@ void print_inliers(const HoughSummary& s) {
 }
 
 void print_roughness(const char* label, const char* part, const Roughness& r) {
+  constexpr double rounding_deg = 1e-9;
+  const double tilt = r.tilt.tilt_deg() < rounding_deg ? 0 : r.tilt.tilt_deg();
   print("{:<10} {}: Sa {}, Sq {}, Sz {}; {:.2g} deg of tilt left, without it Sq {}\n", label, part,
-        format_length(r.sa_nm), format_length(r.sq_nm), format_length(r.sz_nm), r.tilt.tilt_deg(),
+        format_length(r.sa_nm), format_length(r.sq_nm), format_length(r.sz_nm), tilt,
         format_length(r.sq_levelled_nm));
 }
 

@@ -36,7 +36,7 @@ void advise(const RepairSummary& summary) {
     if (hole.too_large) longest_nm = std::max(longest_nm, hole.perimeter_nm);
   }
   if (longest_nm == 0) return;
-  print_note(fmt::format("--max-hole {:.4g}nm would fill the holes left open, were that wanted",
+  print_note(fmt::format("to fill the holes that are left open, add --max-hole {:.4g}nm",
                          1.001 * longest_nm));  // rounding to four digits never goes below it
 }
 

@@ -235,7 +235,7 @@ void add_noise(CLI::App& app, Action& action) {
       },
       action);
   add(
-      *sub, "counts", "The electrons that a beam that stands still gives", of_counts, of_scene,
+      *sub, "counts", "The electrons from a stationary beam", of_counts, of_scene,
       [](CLI::App& counts, Options& o) {
         o.bound.looks["counts.scene"] = {.name = "SCENE", .positional = true};
         o.bound.add<CountsFiles>(counts, "Counts", {}, {"counts.scene"});

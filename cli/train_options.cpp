@@ -117,7 +117,7 @@ void add_material(const TrainFiles& files, bool quiet, workflow::TrainJob& job) 
   if (material.name.empty()) material.name = "Si";
   job.material = io::find_material(material, notes);
   job.material_files.assign(material.files.begin(), material.files.end());
-  if (files.material.name.empty()) notes.push_back("no --material is given: Si");
+  if (files.material.name.empty()) notes.push_back("no --material is given: Si is assumed");
   tell(notes, quiet);
 }
 

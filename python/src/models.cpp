@@ -198,7 +198,7 @@ py::object train(const Call& call) {
   job.material = material_of(call);
   if (job.material.name.empty()) {
     job.material = io::find_material("Si", "`specimen.material`");
-    Call::note("no `specimen.material` is given: Si");
+    Call::note("no `specimen.material` is given: Si is assumed");
   }
   add_surfaces(call, job);
   add_images(call, job);

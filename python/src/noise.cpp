@@ -165,7 +165,7 @@ void add_noise(py::module_& module) {
   define(module, sem.takes<SemNoiseOptions>().takes<io::SemReadOptions>(), noise_sem);
 
   Function counts{.name = "noise_counts",
-                  .summary = "How many electrons a beam that stands still makes, many times over."};
+                  .summary = "Count the electrons from a stationary beam, many times over."};
   counts.arguments = {{"scene", "PathLike", "A scene (TOML).", true, false}};
   counts.result_type = "Findings";
   counts.result =

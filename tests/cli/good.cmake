@@ -66,7 +66,7 @@ semsurf_cli_test(mesh.units ARGS mesh cube.off --unit um --scale 0.5 --out-unit 
 semsurf_cli_test(mesh.repair ARGS mesh open.off --repair --max-hole 1um -o closed.obj
   STDOUT "repair +filled 1 hole with" "shape +closed" WRITES closed.obj INFO closed.obj "closed, ")
 semsurf_cli_test(mesh.repair_leaves_open ARGS mesh open.off --repair -o out.ply
-  STDOUT "left open: a hole of 4 edges, 160 nm round" STDERR "--max-hole 160.2nm would fill" WRITES out.ply)
+  STDOUT "left open: a hole of 4 edges, 160 nm round" STDERR "add --max-hole 160.2nm" WRITES out.ply)
 semsurf_cli_test(mesh.repair_nothing ARGS mesh cube.off --repair -o cube.off.ply STDOUT "nothing to mend")
 semsurf_cli_test(mesh.open_warns ARGS mesh open.off -o out.ply STDERR "Try --repair" WRITES out.ply)
 semsurf_cli_test(mesh.simplify ARGS mesh "${PROJECT_SOURCE_DIR}/samples/pyramid.stl" --simplify 0.1nm

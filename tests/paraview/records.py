@@ -109,7 +109,7 @@ PROFILE = {"Kind": ("Edge", "profile.kind=edge"), "AlongX": (1, "profile.along_x
            "ModelError": (0.1, "profile.model_error=0.1"), "Seed": (5, "profile.seed=5")}
 # Inputs, and what says what is made or shown, not how.
 APART = {"Input", "Scalars", "SEM", "SEMScalars", "Tip", "AFMLandmarks", "SEMLandmarks", "Simulated", "SimulatedScalars",
-         "ModelFile", "Material", "MaterialFile", "UseTransform", "Repair", "Limit"}
+         "After", "AfterScalars", "ModelFile", "Material", "MaterialFile", "UseTransform", "Repair", "Limit"}
 
 
 def sphere():

@@ -175,12 +175,12 @@ std::vector<std::string> reasons_of(const ReconstructSummary& s, double tilt_err
     const ScaleReport& last = r.scales.back();
     if (last.afm_residual.pixels > 0 && !like_noise(last.afm_residual))
       reasons.push_back(fmt::format(
-          "what is left of the AFM scan does not look like noise ({}): check the tip and the "
+          "the residual of the AFM scan does not look like noise ({}): check the tip and the "
           "scan's noise",
           seen(last.afm_residual)));
     if (last.sem_residual.pixels > 0 && !like_noise(last.sem_residual))
       reasons.push_back(fmt::format(
-          "what is left of the SEM image does not look like noise ({}): check the registration, "
+          "the residual of the SEM image does not look like noise ({}): check the registration, "
           "the model and the calibration",
           seen(last.sem_residual)));
   }
@@ -193,7 +193,7 @@ std::vector<std::string> reasons_of(const ReconstructSummary& s, double tilt_err
           k + 2, view.pose.tilt_deg, s.views[k].tilt_deg));
     if (!like_noise(view.statistics))
       reasons.push_back(fmt::format(
-          "what is left of view {} does not look like noise ({}): check its tilt and azimuth, and "
+          "the residual of view {} does not look like noise ({}): check its tilt and azimuth, and "
           "that it is of the same place",
           k + 2, seen(view.statistics)));
   }

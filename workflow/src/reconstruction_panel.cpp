@@ -134,7 +134,7 @@ std::string title_of(const ReconstructJob& job, const ReconstructSummary& s) {
   std::string text = job.afm ? job.afm->file.filename().string() : "";
   if (job.sem) text += (text.empty() ? "" : " and ") + job.sem->file.filename().string();
   text += s.verdict == ReconstructionVerdict::sound ? ": converged, residuals like noise"
-                                                    : ": look at report.json, it is flagged";
+                                                    : ": flagged, see the reasons in report.json";
   if (s.truth)
     text += fmt::format("; {:.2f} nm rms from the truth ({:.2f} nm before)", s.truth->rms_nm,
                         s.truth->start_rms_nm);

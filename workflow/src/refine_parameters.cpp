@@ -29,7 +29,8 @@ void describe(ParameterVisitor& visit, RefineJob& job) {
       {{.name = "beam.tilt",
         .help = "Angle of the beam from straight down in each SEM image in turn, or in all"},
        {.name = "beam.azimuth",
-        .help = "Direction that the beam is tilted to in each SEM image: 0 is +x, 90deg is +y"},
+        .help =
+            "Direction in which the tilted beam travels in each SEM image: 0 is +x, 90deg is +y"},
        {.name = "reconstruction.view_signal",
         .help = "Signal of each SEM image, separated by semicolons: SE, BSE, a quadrant or a "
                 "detector as for 'semsurf simulate --detector'",

@@ -24,13 +24,14 @@ std::optional<std::string> tier_doubt(const mc::Physics& physics, std::size_t ma
                        format_share(of_materials), better);
   if (accuracy < of_topography)
     return fmt::format(
-        "monsel: topography differs by {} beyond a gain, and by {} at steep edges, {}",
+        "monsel: topography differs by {} beyond a common factor, and by {} at steep edges, {}",
         format_share(of_topography), format_share(of_edges), better);
   if (accuracy < of_edges)
     return fmt::format(
-        "monsel: enough for topography ({} beyond a gain); at steep edges {} off, {}",
+        "monsel: accurate enough for topography ({} off beyond a common factor); at steep edges {} "
+        "off, {}",
         format_share(of_topography), format_share(of_edges), better);
-  return fmt::format("monsel: enough for {}, but for a gain", asked);
+  return fmt::format("monsel: accurate enough for {}, apart from a common factor", asked);
 }
 
 }  // namespace surf::workflow

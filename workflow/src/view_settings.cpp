@@ -30,14 +30,15 @@ void describe(ParameterVisitor& visit, ViewSettings& views) {
                     .limits = within(0, largest_view_tilt_deg),
                     .otherwise = "straight down",
                     .form = "ANGLE"});
-  describe_numbers(visit, views.azimuths_deg,
-                   {.name = "beam.azimuth",
-                    .help = "Direction that the beam is tilted to in each SEM image, or in each "
-                            "after the first: 0 is +x, 90deg is +y",
-                    .unit = Unit::deg,
-                    .limits = within(-360, 360),
-                    .otherwise = "to +x",
-                    .form = "ANGLE"});
+  describe_numbers(
+      visit, views.azimuths_deg,
+      {.name = "beam.azimuth",
+       .help = "Direction in which the tilted beam travels in each SEM image, or in each "
+               "after the first: 0 is +x, 90deg is +y",
+       .unit = Unit::deg,
+       .limits = within(-360, 360),
+       .otherwise = "to +x",
+       .form = "ANGLE"});
   describe_numbers(visit, views.energies_ev,
                    {.name = "reconstruction.view_energy",
                     .help = "Energy of the beam in each SEM image, or in each after the first",

@@ -182,6 +182,7 @@ void draw(const std::filesystem::path& target, const std::string& kind, const st
     if (end.started && end.code == 0 && !std::filesystem::is_empty(target)) return;
     if (end.started && end.code != no_matplotlib) {
       const std::string line = last_line(end.errors);
+      if (line.starts_with("KeyboardInterrupt")) throw Interrupted();  // Ctrl-C reached both
       throw FileError(file,
                       fmt::format("drawing it failed ({}: {})", python,
                                   line.empty() ? fmt::format("exit code {}", end.code) : line),

@@ -24,6 +24,8 @@ std::vector<mc::Material> read_builtin_materials() {
   });
 }
 
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
 const mc::Material& find_in(const std::vector<mc::Material>& materials, const std::string& name,
                             const std::string& subject) {
   std::vector<std::string> names;
@@ -31,6 +33,10 @@ const mc::Material& find_in(const std::vector<mc::Material>& materials, const st
     if (material.name == name) return material;
     names.push_back(material.name);
   }
+  for (const std::string& other : names)
+    if (std::ranges::equal(name, other, {}, lower, lower))
+      throw UsageError(subject, fmt::format("there is no material '{}'", name),
+                       fmt::format("Did you mean {}?", other));
   throw UsageError(subject, fmt::format("there is no material '{}'", name),
                    fmt::format("Choose one of: {}. Or describe it in a file and add "
                                "`specimen.materials=FILE.toml`",

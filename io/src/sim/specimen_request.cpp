@@ -70,7 +70,7 @@ SceneFile from_shapes(const SpecimenRequest& request, const ShapesInMemory& shap
     scene.inputs.push_back(file);
   }
   const std::string material = request.material.value_or("Si");
-  if (!request.material) scene.notes.push_back("no `specimen.material` is given: Si");
+  if (!request.material) scene.notes.push_back("no `specimen.material` is given: Si is assumed");
   if (request.override_unit && !request.mesh_unit_nm)
     throw UsageError("`specimen.override_unit`", "there is no unit to take in place of the file's",
                      "Add `specimen.unit=um`, or leave it out");

@@ -289,7 +289,7 @@ class Work {
     const auto judge_image = [&](const ResidualReport& r, const char* image) {
       if (r.pixels == 0 || r.like_noise) return;
       out.warnings.push_back(fmt::format(
-          "what is left of the {} image does not look like its noise (deviation {:.2f} of 1, "
+          "the residual of the {} image does not look like its noise (deviation {:.2f} of 1, "
           "neighbours' correlation {:.2f} "
           "along and {:.2f} across rows): look at its residual for what no surface explains",
           image, r.deviation, r.along, r.across));

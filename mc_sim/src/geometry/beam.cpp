@@ -39,11 +39,12 @@ void describe(ParameterVisitor& visit, Beam& beam) {
                         .help = "Angle of the beam from straight down",
                         .unit = Unit::deg,
                         .limits = from_to_below(0, 90)});
-  visit(beam.azimuth_deg, {.name = "beam.azimuth",
-                           .help = "Direction that the beam is tilted to: 0 is +x, 90deg is +y",
-                           .unit = Unit::deg,
-                           .limits = within(-most_azimuth_deg, most_azimuth_deg),
-                           .level = Level::advanced});
+  visit(beam.azimuth_deg,
+        {.name = "beam.azimuth",
+         .help = "Direction in which the tilted beam travels: 0 is +x, 90deg is +y",
+         .unit = Unit::deg,
+         .limits = within(-most_azimuth_deg, most_azimuth_deg),
+         .level = Level::advanced});
   visit(beam.spot_nm, {.name = "beam.spot",
                        .help = "Standard deviation of the Gaussian spot; 0 is a point",
                        .unit = Unit::nm,

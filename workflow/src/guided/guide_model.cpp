@@ -127,7 +127,7 @@ GuideModel find_guide_model(const EstimateOptions& options, const mc::Scene& sce
   }
   if (scene.materials().size() > 1) return none("by shape alone: fast models are of one material");
   if (scene.beam().tilt_deg != 0 || scene.beam().working_distance_nm > 0)
-    return none("by shape alone: fast models are of beams straight from above");
+    return none("by shape alone, because fast models need a vertical beam");
   if (cache.empty()) return none("by shape alone: there is no cache with fast models");
   if (auto stored = find_stored(scene, cache / "models")) return *std::move(stored);
   if (training_pays(scene, primaries)) {
