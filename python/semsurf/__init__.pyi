@@ -452,7 +452,7 @@ def noise_counts(
     seed: int | None = None,
     threads: int | None = None,
 ) -> Findings:
-    """How many electrons a beam that stands still makes, many times over."""
+    """Count the electrons from a stationary beam, many times over."""
 
 
 def check_mesh(
