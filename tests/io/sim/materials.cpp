@@ -37,7 +37,9 @@ TEST(Materials, SiliconIsSilicon) {
 TEST(Materials, UnknownNamesAreAnsweredWithTheNearestFirst) {
   EXPECT_THAT(
       test::complaint<UsageError>([] { find_material("si", "--material"); }),
-      testing::AllOf(HasSubstr("--material: "), HasSubstr("'si'"), HasSubstr("Choose one of: Si")));
+      testing::AllOf(HasSubstr("--material: "), HasSubstr("'si'"), HasSubstr("Did you mean Si?")));
+  EXPECT_THAT(test::complaint<UsageError>([] { find_material("Sii", "--material"); }),
+              HasSubstr("Choose one of: Si"));
 }
 
 TEST(Materials, AreAllThatAreKnown) {
