@@ -27,9 +27,9 @@ std::vector<double> usual_edges() {
 
 std::vector<double> edges_of(py::handle values, const std::string& subject) {
   const Numbers array = Numbers::ensure(values);
-  if (!array || array.ndim() != 1) {
+  if (!array || array.ndim() != 1 || array.size() < 2) {
     PyErr_Clear();
-    throw UsageError(subject, "the edges of its energies are no list of numbers",
+    throw UsageError(subject, "the edges of its energies are no list of two numbers or more",
                      "Give numbers in eV that rise, as (function, [0, 50, 1000])");
   }
   return {array.data(), array.data() + array.size()};
@@ -88,14 +88,9 @@ std::vector<mc::Detector> detectors_of(const py::object& functions) {
       throw UsageError(subject, "it is no function",
                        "Give a function of energy_ev and direction, or a pair of it and the edges "
                        "of energies");
-    mc::Acceptance sizes = *table;  // edges are checked before they are used
-    sizes.polar_bins = sizes.azimuth_bins = 1;
-    sizes.probability.assign(std::max<std::size_t>(1, sizes.energy_edges_ev.size()) - 1, 0);
-    mc::validate(sizes, subject);
     tabulate(function, *table, subject);
     mc::validate(*table, subject);
     detector.acceptance = std::move(table);
-    mc::validate(std::vector{detector});
     detectors.push_back(std::move(detector));
   }
   return detectors;

@@ -141,7 +141,7 @@ def test_probabilities_thin_the_counts(samples):
     ({"own": lambda energy, direction: 2 + 0 * energy}, "outside 0 to 1"),
     ({"own": lambda energy, direction: numpy.nan * energy}, "outside 0 to 1"),
     ({"own": (lambda energy, direction: 1, [50, 0])}, "do not rise"),
-    ({"own": (lambda energy, direction: 1, "wide")}, "no list of numbers"),
+    ({"own": (lambda energy, direction: 1, "wide")}, "no list of two numbers"),
     ({"a b": lambda energy, direction: 1}, "no name for a channel"),
     ({"SE": lambda energy, direction: 1}, "given twice"),
 ])
