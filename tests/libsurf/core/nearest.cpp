@@ -12,6 +12,7 @@ TEST(Nearest, IsTheCandidateOfFewestChangesIfTheyAreFew) {
   EXPECT_EQ(nearest("reconstruction", {"reconstruct", "register"}), "reconstruct");  // a third
   EXPECT_EQ(nearest("energy", {"tilt", "spot"}), "");
   EXPECT_EQ(nearest("energy", {}), "");
+  EXPECT_EQ(nearest("--tlit", {"--unit", "--tilt"}), "--tilt");  // letters that changed places
 }
 
 }  // namespace
