@@ -69,7 +69,7 @@ TEST_F(GuideModelTest, IsKeptForTheSceneOrThereIsNone) {
   EXPECT_TRUE(find_guide_model(usual, scene(3), cache_).model);
   EXPECT_TRUE(find_guide_model(usual, scene(1.5), cache_).model);
   EXPECT_FALSE(find_guide_model(usual, scene(0.5), cache_).model);  // a sixth of its pixel
-  EXPECT_THAT(find_guide_model(usual, scene(3, 30), cache_).reason, HasSubstr("above"));
+  EXPECT_THAT(find_guide_model(usual, scene(3, 30), cache_).reason, HasSubstr("vertical beam"));
   EXPECT_FALSE(find_guide_model(usual, scene(3, 0, "Au"), cache_).model);
 }
 
