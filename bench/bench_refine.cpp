@@ -306,8 +306,11 @@ void measure(const Case& c, const std::string& folder, std::uint64_t seed, bool 
                  found.value - c.lean_nm);
     }
   for (std::size_t v = 0; v < s.images.size(); ++v)
-    fmt::print("  image {}: {:.1f} % unexplained, {:.1f} % before\n", v + 1,
-               100 * s.images[v].unexplained, 100 * s.images[v].unexplained_before);
+    fmt::print(
+        "  image {}: {:.1f} % unexplained, {:.1f} % before; tilt {:.2f} deg, bend {:.3f}, "
+        "blur {:.2f} nm2\n",
+        v + 1, 100 * s.images[v].unexplained, 100 * s.images[v].unexplained_before,
+        s.images[v].tilt_deg, s.images[v].state.bend, s.images[v].state.blur_nm2);
   std::fflush(stdout);
 }
 

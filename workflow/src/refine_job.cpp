@@ -40,6 +40,8 @@ constexpr double least_relief = 0.1;      // of the height, above or below the g
 constexpr double correlation_nm = 4;      // of what simulations are off by
 constexpr double wide_correlations = 10;  // they are off as much over wide parts
 constexpr double edges_per_spacing = 3;   // triangles between bumps
+constexpr double bend_errors = 1;         // at a deviation from the mean, as much again
+constexpr double blur_error_nm2 = 4;      // secondaries escape from within 2 nm more or less
 constexpr double most_unexplained = 0.5;
 constexpr double beside_nm = 40;                          // what images show, the mesh is fine, too
 constexpr double sheet_heights = 3, least_sheet_nm = 80;  // how far a sheet goes on
@@ -191,6 +193,8 @@ class Refinement {
         job_.model_error *
         std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, levels.size())));
     view.wide_nm = wide_correlations * correlation_nm;
+    view.bend_error = bend_errors * job_.model_error;
+    view.blur_error_nm2 = job_.model_error > 0 ? blur_error_nm2 : 0;
     fit_gain(view, states_[v]);
   }
 
@@ -358,6 +362,8 @@ class Refinement {
     a.shift_y_nm += share * (b.shift_y_nm - a.shift_y_nm);
     a.tilt_x_deg += share * (b.tilt_x_deg - a.tilt_x_deg);
     a.tilt_y_deg += share * (b.tilt_y_deg - a.tilt_y_deg);
+    a.bend += share * (b.bend - a.bend);
+    a.blur_nm2 += share * (b.blur_nm2 - a.blur_nm2);
     a.wide.resize(b.wide.size(), 0);
     for (std::size_t k = 0; k < b.wide.size(); ++k) a.wide[k] += share * (b.wide[k] - a.wide[k]);
     return a;

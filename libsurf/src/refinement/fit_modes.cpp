@@ -14,7 +14,7 @@ namespace surf {
 namespace {
 
 /// The numbers of a view's state, in the order of the unknowns behind the amplitudes.
-enum StateNumber { gain, offset, shift_x, shift_y, tilt_x, tilt_y, state_numbers };
+enum StateNumber { gain, offset, shift_x, shift_y, tilt_x, tilt_y, bend, blur, state_numbers };
 
 void check(const RefinedView& v, std::size_t modes) {
   const std::size_t n = v.measured.size();
@@ -72,6 +72,42 @@ Grid<double> slope(const RefinedView& v, bool along_x) {
       }
       out(x, y) = sum / (2 * pitch);
     }
+  return out;
+}
+
+/// What a bent relation between yields adds to the simulated ones, per unit of `bend`: squares of
+/// the distance from their mean, over their standard deviation.
+Grid<double> bend_shape(const RefinedView& v) {
+  const auto n = static_cast<double>(v.simulated.size());
+  double sum = 0, squares = 0;
+  for (const double s : v.simulated.data()) sum += s;
+  for (const double s : v.simulated.data()) squares += (s - sum / n) * (s - sum / n);
+  const double deviation = std::sqrt(squares / n);
+  Grid<double> out(v.simulated.width(), v.simulated.height(), 0);
+  if (deviation > 0)
+    for (std::size_t p = 0; p < out.size(); ++p) {
+      const double off = v.simulated.data()[p] - sum / n;
+      out.data()[p] = off * off / deviation;
+    }
+  return out;
+}
+
+/// What a wider spot adds to the simulated yields, per nm^2 of its variance: half the Laplacian
+/// (the first term of a Gaussian filter), averaged over three rows or columns.
+Grid<double> blur_shape(const RefinedView& v) {
+  const Grid<double>& s = v.simulated;
+  const int w = s.width(), h = s.height();
+  const auto at = [&](int x, int y) { return s(std::clamp(x, 0, w - 1), std::clamp(y, 0, h - 1)); };
+  const double px = v.placement.pitch_x_nm, py = v.placement.pitch_y_nm;
+  Grid<double> out(w, h, 0);
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x)
+      for (int k = -1; k <= 1; ++k) {
+        const double weight = k == 0 ? 0.5 : 0.25;
+        const double along = at(x + 1, y + k) - 2 * at(x, y + k) + at(x - 1, y + k),
+                     up = at(x + k, y + 1) - 2 * at(x + k, y) + at(x + k, y - 1);
+        out(x, y) += 0.5 * weight * (along / (px * px) + up / (py * py));
+      }
   return out;
 }
 
@@ -182,14 +218,16 @@ ViewEquations equations_of(const RefinedView& view, const RefinedViewState& stat
   add(all_pixels(slope(view, true), state.gain));
   add(all_pixels(slope(view, false), state.gain));
   add_effect(view.tilt_x), add_effect(view.tilt_y);
+  add(all_pixels(bend_shape(view), state.gain));
+  add(all_pixels(blur_shape(view), state.gain));
   for (Column& wide : WideBumps(view).columns()) add(std::move(wide));
   const Eigen::MatrixXd a = dense(first, pixels), b = dense(second, pixels);
   const Eigen::Map<const Eigen::VectorXd> w(weights.data(), static_cast<Eigen::Index>(pixels));
-  const Grid<double> wide = wide_error(view, state);
+  const Grid<double> error = simulation_error(view, state);
   Eigen::VectorXd left(static_cast<Eigen::Index>(pixels));
   for (std::size_t p = 0; p < pixels; ++p)
     left[static_cast<Eigen::Index>(p)] = view.measured.data()[p] - state.offset -
-                                         state.gain * view.simulated.data()[p] - wide.data()[p];
+                                         state.gain * view.simulated.data()[p] - error.data()[p];
   const Eigen::MatrixXd product = a.transpose() * w.asDiagonal() * b, mean = 0.5 * (a + b);
   return {0.5 * (product + product.transpose()), mean.transpose() * w.asDiagonal() * mean,
           mean.transpose() * (w.asDiagonal() * left)};
@@ -211,6 +249,8 @@ void set_prior(const RefinedView& view, const RefinedViewState& s, Eigen::Index 
   set(shift_y, s.shift_y_nm - view.shift_y_nm, view.shift_error_nm);
   set(tilt_x, s.tilt_x_deg, view.tilt_error_deg);
   set(tilt_y, s.tilt_y_deg, view.tilt_error_deg);
+  set(bend, s.bend, view.bend_error);
+  set(blur, s.blur_nm2, view.blur_error_nm2);
   const auto bumps = static_cast<Eigen::Index>(WideBumps(view).size());
   for (Eigen::Index k = 0; k < bumps; ++k)
     set(state_numbers + k, s.wide.empty() ? 0 : s.wide[static_cast<std::size_t>(k)],
@@ -221,6 +261,7 @@ RefinedViewState moved_by(RefinedViewState s, const Eigen::VectorXd& by) {
   s.gain += by[gain], s.offset += by[offset];
   s.shift_x_nm += by[shift_x], s.shift_y_nm += by[shift_y];
   s.tilt_x_deg += by[tilt_x], s.tilt_y_deg += by[tilt_y];
+  s.bend += by[bend], s.blur_nm2 += by[blur];
   s.wide.resize(static_cast<std::size_t>(by.size() - state_numbers), 0);
   for (std::size_t k = 0; k < s.wide.size(); ++k)
     s.wide[k] += by[state_numbers + static_cast<Eigen::Index>(k)];
@@ -229,8 +270,13 @@ RefinedViewState moved_by(RefinedViewState s, const Eigen::VectorXd& by) {
 
 }  // namespace
 
-Grid<double> wide_error(const RefinedView& view, const RefinedViewState& state) {
+Grid<double> simulation_error(const RefinedView& view, const RefinedViewState& state) {
   Grid<double> out(view.measured.width(), view.measured.height(), 0);
+  const auto add = [&](const Grid<double>& shape, double factor) {
+    for (std::size_t p = 0; p < out.size(); ++p) out.data()[p] += factor * shape.data()[p];
+  };
+  if (state.bend != 0) add(bend_shape(view), state.gain * state.bend);
+  if (state.blur_nm2 != 0) add(blur_shape(view), state.gain * state.blur_nm2);
   if (state.wide.empty()) return out;
   const WideBumps bumps(view);
   for (std::size_t p = 0; p < out.size(); ++p)
@@ -240,11 +286,11 @@ Grid<double> wide_error(const RefinedView& view, const RefinedViewState& state) 
 
 void fit_gain(const RefinedView& view, RefinedViewState& state) {
   const std::vector<double> weights = weights_of(view);
-  const Grid<double> wide = wide_error(view, state);
+  const Grid<double> error = simulation_error(view, state);
   double sum = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (std::size_t p = 0; p < weights.size(); ++p) {
     const double w = weights[p], s = view.simulated.data()[p],
-                 m = view.measured.data()[p] - wide.data()[p];
+                 m = view.measured.data()[p] - error.data()[p];
     sum += w, x += w * s, y += w * m, xx += w * s * s, xy += w * s * m;
   }
   const double determinant = sum * xx - x * x;
@@ -333,16 +379,18 @@ double misfit(const std::vector<RefinedView>& views, const std::vector<RefinedVi
     const RefinedView& view = views[v];
     const RefinedViewState& s = states[v];
     const std::vector<double> weights = weights_of(view);
-    const Grid<double> wide = wide_error(view, s);
+    const Grid<double> error = simulation_error(view, s);
     for (std::size_t p = 0; p < weights.size(); ++p) {
       const double off =
-          view.measured.data()[p] - s.offset - s.gain * view.simulated.data()[p] - wide.data()[p];
+          view.measured.data()[p] - s.offset - s.gain * view.simulated.data()[p] - error.data()[p];
       sum += weights[p] * off * off;
     }
     off_by(s.shift_x_nm - view.shift_x_nm, view.shift_error_nm);
     off_by(s.shift_y_nm - view.shift_y_nm, view.shift_error_nm);
     off_by(s.tilt_x_deg, view.tilt_error_deg);
     off_by(s.tilt_y_deg, view.tilt_error_deg);
+    off_by(s.bend, view.bend_error);
+    off_by(s.blur_nm2, view.blur_error_nm2);
     for (const double w : s.wide) off_by(w, view.wide_error);
   }
   return sum;

@@ -135,6 +135,15 @@ TEST(FitModes, StandardErrorsHoldWhereNoisyEffectsAreAlike) {
   EXPECT_LT(mean_square(0.01, alike, 0, 2), 1.5);
 }
 
+/// The largest amplitude, in standard errors.
+double largest(const ModeFit& fit) {
+  double most = 0;
+  for (std::size_t k = 0; k < modes; ++k)
+    most =
+        std::max(most, std::abs(fit.amplitudes_nm[k]) / std::sqrt(fit.covariance[k * modes + k]));
+  return most;
+}
+
 TEST(FitModes, WhatSimulationsAreOffByInWidePartsIsNoSurface) {
   std::vector<RefinedView> views;
   for (const double error : {0.0, 20.0}) {
@@ -143,24 +152,64 @@ TEST(FitModes, WhatSimulationsAreOffByInWidePartsIsNoSurface) {
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) views.back().measured(x, y) += 8 * std::sin(0.1 * x);
   }
-  const auto largest = [](const ModeFit& fit) {
-    double most = 0;  // in standard errors
-    for (std::size_t k = 0; k < modes; ++k)
-      most =
-          std::max(most, std::abs(fit.amplitudes_nm[k]) / std::sqrt(fit.covariance[k * modes + k]));
-    return most;
-  };
   const ModeFit taken_in = fit_modes({views[0]}, {{80, 12}}, nothing, wide_prior(2)),
                 known = fit_modes({views[1]}, {{80, 12}}, nothing, wide_prior(2));
   EXPECT_GT(largest(taken_in), 10);
   EXPECT_LT(largest(known), 3);
-  const Grid<double> found = wide_error(views[1], known.views[0]);
+  const Grid<double> found = simulation_error(views[1], known.views[0]);
   EXPECT_NEAR(found(15, 2) - found(1, 2), 8 * (std::sin(1.5) - std::sin(0.1)), 4);
+}
+
+/// An image of the surface itself, whose pixels have another relation to the simulated ones.
+RefinedView other_image(double (*pixel)(int, int)) {
+  RefinedView view = made_view(nothing, 3, 1);
+  NormalNumbers normal(4, 1);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) view.measured(x, y) = 12 + 80 * pixel(x, y) + normal();
+  return view;
+}
+
+TEST(FitModes, BentYieldsAreNoSurface) {
+  RefinedView view = other_image([](int x, int y) {
+    const double s = shape(x, y);
+    return s + 0.5 * (s - 1.3) * (s - 1.3);
+  });
+  const ModeFit taken_in = fit_modes({view}, {{80, 12}}, nothing, wide_prior(2));
+  view.bend_error = 0.3;
+  const ModeFit known = fit_modes({view}, {{80, 12}}, nothing, wide_prior(2));
+  EXPECT_GT(largest(taken_in), 10);
+  EXPECT_LT(largest(known), 3);
+  const Grid<double> found = simulation_error(view, known.views[0]);
+  const double bright = shape(23, 0) - 1.3, middle = shape(14, 10) - 1.3;
+  EXPECT_NEAR(found(23, 0) - found(14, 10), 40 * (bright * bright - middle * middle), 5);
+}
+
+TEST(FitModes, AWiderSpotIsNoSurface) {
+  constexpr double blur_nm2 = 4, bright_nm2 = 50;
+  // A bright edge: a Gaussian along x, which another one widens.
+  const auto edge = [](int x, double variance_nm2) {
+    const double off_nm = 2.0 * (x - 15);
+    return std::sqrt(bright_nm2 / variance_nm2) * std::exp(-0.5 * off_nm * off_nm / variance_nm2);
+  };
+  RefinedView view = made_view(nothing, 3, 1);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const double waves = shape(x, y) - 1 - 0.02 * x,  // of 0.5 and 0.35 per pixel of 2 nm
+          damped = std::exp(-0.5 * blur_nm2 * (0.25 * 0.25 + 0.175 * 0.175));
+      view.simulated(x, y) += edge(x, bright_nm2);
+      view.measured(x, y) += 80 * (edge(x, bright_nm2 + blur_nm2) + (damped - 1) * waves);
+    }
+  const ModeFit taken_in = fit_modes({view}, {{80, 12}}, nothing, wide_prior(2));
+  view.blur_error_nm2 = 4;
+  const ModeFit known = fit_modes({view}, {{80, 12}}, nothing, wide_prior(2));
+  EXPECT_GT(largest(taken_in), 10);
+  EXPECT_LT(largest(known), 4);  // a Laplacian is the first term only
+  EXPECT_NEAR(known.views[0].blur_nm2, blur_nm2, 1.2);
 }
 
 TEST(Misfit, IsLeastAtTheFit) {
   RefinedView view = made_view({1, -2, 0.5, 3, 0, -1}, 1, 3);
-  view.wide_error = 5, view.wide_nm = 20;
+  view.wide_error = 5, view.wide_nm = 20, view.bend_error = 0.1, view.blur_error_nm2 = 1;
   const std::vector<RefinedViewState> start{{80, 12}};
   const ModeFit fit = fit_modes({view}, start, nothing, wide_prior(2));
   // As the fit sees it, to the first order.

@@ -34,6 +34,12 @@ struct RefinedView {
   /// What simulations are off by over wide parts of the image, as bumps that add up to 1 (two
   /// distances wide each): their standard deviation in measured units; 0: nothing.
   double wide_error = 0, wide_nm = 40;
+  /// The relation between simulated and true yields may bend: by how much at one standard deviation
+  /// of the image from its mean, over that deviation. A prior deviation; 0: it does not.
+  double bend_error = 0;
+  /// The true image may be more or less blurred, by a Gaussian of this variance: a prior deviation;
+  /// 0: it is not.
+  double blur_error_nm2 = 0;
 };
 
 /// Gain, offset and place of an image. Its measured values at a place are gain times the simulated
@@ -42,7 +48,8 @@ struct RefinedViewState {
   double gain = 1, offset = 0;
   double shift_x_nm = 0, shift_y_nm = 0;  ///< what is to be added to the image's frame
   double tilt_x_deg = 0, tilt_y_deg = 0;
-  std::vector<double> wide;  ///< what simulations are off by, one per bump; empty: 0
+  std::vector<double> wide;       ///< what simulations are off by, one per bump; empty: 0
+  double bend = 0, blur_nm2 = 0;  ///< likewise, see `RefinedView`
 };
 
 struct ModeFit {
@@ -60,7 +67,7 @@ struct ModeFit {
 void fit_gain(const RefinedView& view, RefinedViewState& state);
 
 /// What simulations are off by at each pixel, in measured units.
-Grid<double> wide_error(const RefinedView& view, const RefinedViewState& state);
+Grid<double> simulation_error(const RefinedView& view, const RefinedViewState& state);
 
 /// The view as a Gaussian of `sigma_px` pixels (>= 0) blurs it, measured and simulated alike, so
 /// that steps reach farther than an edge is wide. Effects must be of all pixels in their order, or

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "refine_images.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <vector>
+
+#include "surf/io/sim/materials.h"
+#include "surf/mc/simulate.h"
+#include "surf/profile/feature_shape.h"
+#include "surf/refinement/mesh_modes.h"
+#include "surf/workflow/libraries.h"
+#include "temporary_folder.h"
+
+namespace surf::workflow {
+namespace {
+
+constexpr int columns = 48, rows = 8, window = 4;  // pixels
+constexpr double pixel_nm = 2, tilt_deg = 15, energy_ev = 300;
+
+/// A line seen from one side.
+RefineJob seen_from_one_side() {
+  RefineJob job;
+  PlacedImage image;
+  image.pitch_x_nm = image.pitch_y_nm = pixel_nm;
+  image.origin_x_nm = -0.5 * (columns - 1) * pixel_nm;
+  image.origin_y_nm = -0.5 * (rows - 1) * pixel_nm;
+  image.values = Grid<double>(columns, rows, 0);
+  job.images = {{image, {}, {}}};
+  job.tilts_deg = {tilt_deg};
+  job.tilt_error_deg = 0;
+  job.material = io::find_material("Si", "test");
+  job.energy_ev = energy_ev;
+  return job;
+}
+
+/// Sums over `window` columns, and their variances.
+struct Windows {
+  std::array<double, columns / window> sum{}, variance{};
+};
+
+/// Each electron by itself, without a library.
+Windows long_simulation(const TriangleMesh& mesh, std::uint64_t seed) {
+  mc::Specimen specimen;
+  specimen.materials = {io::find_material("Si", "test")};
+  specimen.bodies.push_back({"line", mesh, 0});
+  mc::Beam beam;
+  beam.energy_ev = energy_ev, beam.tilt_deg = tilt_deg;
+  mc::Scan scan;
+  scan.width = columns, scan.height = rows;
+  scan.pixel_x_nm = scan.pixel_y_nm = pixel_nm;
+  mc::SimulationOptions options;
+  options.method = mc::Method::direct;
+  options.budget = mc::ElectronsPerPixel{800};
+  options.seed = seed;
+  const mc::SimulationResult done = mc::simulate(mc::Scene(specimen, beam, scan), options, {});
+  Windows out;
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x) {
+      const auto yield = done.yield(0, x, y);
+      const auto k = static_cast<std::size_t>(x / window);
+      out.sum[k] += yield.mean, out.variance[k] += yield.standard_error * yield.standard_error;
+    }
+  return out;
+}
+
+TEST(RefineImages, EffectsAreThoseThatLongSimulationsDifferBy) {
+  const RefineJob job = seen_from_one_side();
+  const test::TemporaryFolder cascades;
+  CachedLibraries libraries(cascades.path());
+  const RefineImages images(job, libraries);
+  const TriangleMesh line = feature_mesh({FeatureKind::line, 40, 0, {30, 95, 1, 1}}, 300);
+  std::vector<MeshMode> modes =
+      smooth_modes(line, {{-25, -10, 0}, {25, 10, 30}}, SmoothKind::walls);
+  modes.resize(3);  // along x: the line leans, grows wider, tapers
+
+  constexpr int repeats = 6;
+  std::array<Windows, 3> effects;
+  for (int n = 0; n < repeats; ++n) {
+    std::vector<RefinedView> views(1);
+    views[0].measured = Grid<double>(columns, rows, 0);
+    std::int64_t counted = 0;
+    images.add_effects(line, modes, {0, 0, 0}, {{}}, 80, 1000 + 10 * static_cast<unsigned>(n), {},
+                       views, counted);
+    EXPECT_GT(counted, 0);
+    for (std::size_t m = 0; m < modes.size(); ++m) {
+      const ModeEffect& e = views[0].effects[m];
+      Windows once;
+      for (std::size_t i = 0; i < e.pixels.size(); ++i)
+        once.sum[e.pixels[i] % columns / window] += 0.5 * (e.first[i] + e.second[i]);
+      for (std::size_t k = 0; k < once.sum.size(); ++k)
+        effects[m].sum[k] += once.sum[k] / repeats,
+            effects[m].variance[k] += once.sum[k] * once.sum[k];
+    }
+  }
+
+  constexpr double step_nm = 2;  // of the effects, too
+  double chi_squared = 0, product = 0, squares = 0;
+  const Windows before = long_simulation(line, 1);
+  for (std::size_t m = 0; m < modes.size(); ++m) {
+    std::vector<double> amplitudes(modes.size(), 0);
+    amplitudes[m] = step_nm;
+    const Windows after = long_simulation(moved(line, modes, amplitudes), 2 + m);
+    for (std::size_t k = 0; k < before.sum.size(); ++k) {
+      const double effect = effects[m].sum[k], wanted = (after.sum[k] - before.sum[k]) / step_nm,
+                   own = (effects[m].variance[k] - repeats * effect * effect) /
+                         (repeats * (repeats - 1.0)),
+                   others = (before.variance[k] + after.variance[k]) / (step_nm * step_nm);
+      chi_squared += (effect - wanted) * (effect - wanted) / (own + others);
+      product += effect * wanted, squares += wanted * wanted - others;
+    }
+  }
+  // All modes share the image that the steps start from, and a library's chance is nearly nothing.
+  EXPECT_NEAR(chi_squared / static_cast<double>(modes.size() * before.sum.size()), 1, 0.7);
+  EXPECT_NEAR(product / squares, 1, 0.04);
+}
+
+}  // namespace
+}  // namespace surf::workflow
