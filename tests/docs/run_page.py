@@ -21,6 +21,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 BLOCK = re.compile(r"^```(sh|text)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 NEAR, NEAR_ERROR = 0.05, 0.4
+# A command that fails ends its block; 4 says that the result is written, but not to be trusted.
+STOP_AT_ERRORS = "trap 'code=$?; [ $code -eq 4 ] || exit $code' ERR\n"
 
 
 def parts(line):
@@ -54,7 +56,7 @@ def run(folder):
         kind, body = block.groups()
         line = text.count("\n", 0, block.start()) + 2
         if kind == "sh":
-            done = subprocess.run(["bash", "-c", body], cwd=folder, env=environment, text=True, stdout=subprocess.PIPE,
+            done = subprocess.run(["bash", "-c", STOP_AT_ERRORS + body], cwd=folder, env=environment, text=True, stdout=subprocess.PIPE,
                                   stderr=subprocess.STDOUT)
             said, commands = done.stdout, commands + 1
             if done.returncode not in (0, 4):
