@@ -39,6 +39,13 @@ void add_map(vtkImageData* image, const Grid<unsigned char>& level) {
 
 }  // namespace
 
+/// A missing tip is told in our words, and not in VTK's.
+int vtkSemsurfCertainty::FillInputPortInformation(int port, vtkInformation* info) {
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  if (port == 1) info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
+
 int vtkSemsurfCertainty::RequestData(vtkInformation*, vtkInformationVector** inputs,
                                      vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
@@ -49,7 +56,8 @@ int vtkSemsurfCertainty::RequestData(vtkInformation*, vtkInformationVector** inp
     vtkImageData* const tip_image = pv::image_input(inputs, 1, "Tip");
     std::vector<std::string> warnings;
     const Tip tip =
-        pv::to_tip_for(tip_image, pv::chosen_array(this, 1, tip_image), field, "Tip", warnings);
+        pv::to_tip_for(tip_image, tip_image ? pv::chosen_array(this, 1, tip_image) : nullptr, field,
+                       "Tip", warnings);
     workflow::CertaintyResult certain;
     pv::work(this, [&](const Watch& watch) {
       certain = workflow::certainty(field, tip, parameters, pv::hear(watch, warnings));

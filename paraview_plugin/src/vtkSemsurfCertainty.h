@@ -13,6 +13,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfCertainty : public vtkSemsurfImageFilter {
 
  protected:
   vtkSemsurfCertainty() { this->SetNumberOfInputPorts(2); }
+  int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 };
 

@@ -22,6 +22,13 @@ vtkStandardNewMacro(vtkSemsurfMorphology);
 
 using namespace surf;
 
+/// A missing tip is told in our words, and not in VTK's.
+int vtkSemsurfMorphology::FillInputPortInformation(int port, vtkInformation* info) {
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  if (port == 1) info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
+
 int vtkSemsurfMorphology::RequestData(vtkInformation*, vtkInformationVector** inputs,
                                       vtkInformationVector* outputs) {
   return pv::attempt(this, [&] {
@@ -36,7 +43,8 @@ int vtkSemsurfMorphology::RequestData(vtkInformation*, vtkInformationVector** in
     vtkImageData* const tip_image = pv::image_input(inputs, 1, "Tip");
     std::vector<std::string> warnings;
     const Tip tip =
-        pv::to_tip_for(tip_image, pv::chosen_array(this, 1, tip_image), field, "Tip", warnings);
+        pv::to_tip_for(tip_image, tip_image ? pv::chosen_array(this, 1, tip_image) : nullptr, field,
+                       "Tip", warnings);
     pv::work(this, [&](const Watch& watch) {
       field = workflow::morphology(operation, field, tip, parameters, pv::hear(watch, warnings));
     });

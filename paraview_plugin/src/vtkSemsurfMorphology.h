@@ -16,6 +16,7 @@ class VTKSEMSURF_EXPORT vtkSemsurfMorphology : public vtkSemsurfImageFilter {
 
  protected:
   vtkSemsurfMorphology() { this->SetNumberOfInputPorts(2); }
+  int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
  private:

@@ -122,6 +122,9 @@ def outputs_tell_how_they_were_made():
 def wrong_properties_are_refused():
     refuses_until(simple.EstimateTip(Input=scan(), TipSize=4), ["Tip Size", "middle"], TipSize=5)
     refuses(simple.CleanScan(Input=scan(), MedianWidth=4), "Median Width", "Give 3 or 5")
+    for without in (simple.ErodebyTip(Input=scan()), simple.CertaintyMap(Input=scan())):
+        without.Tip = None
+        refuses(without, "Tip", "missing", "Estimate Tip")
     refuses(simple.ErodebyTip(Input=scan(), Tip=tip(), Distance=-1), "Distance", "0nm or more")
     refuses(simple.CertaintyMap(Input=scan(), Tip=tip(), Sigmas=0), "Sigmas")
     refuses(simple.ErodebyTip(Input=scan(), Tip=simple.AFMTip(TipSize=4)), "Tip Size", "middle")

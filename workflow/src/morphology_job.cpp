@@ -79,7 +79,8 @@ Tip tip_for(Tip tip, const HeightField& scan, const std::string& name, const Rep
   }
   if (tip.z_nm.width() > scan.z_nm.width() || tip.z_nm.height() > scan.z_nm.height())
     reporter.warn(
-        fmt::format("{}: {} x {} pixels, more than the scan has; what cannot meet it plays no part",
+        fmt::format("{}: {} x {} pixels, more than the scan has: is it the tip, or the scan? What "
+                    "cannot meet the scan plays no part",
                     name, tip.z_nm.width(), tip.z_nm.height()));
   return tip;
 }

@@ -36,13 +36,15 @@ double correlation(const RefinedView& v) {
   return va > 0 && vb > 0 ? (ab - a * b / n) / std::sqrt(va * vb) : 0;
 }
 
-double unexplained_share(const RefinedView& v, const RefinedViewState& s, const SemNoise& noise) {
+double unexplained_share(const RefinedView& v, const RefinedViewState& s, const SemNoise& noise,
+                         const Grid<double>& chance_of_yields) {
   double n = 0, left = 0, sum = 0, squares = 0, chance = 0;
   for (std::size_t p = 0; p < v.measured.size(); ++p) {
     if (!v.used.includes(p)) continue;
     const double mean = s.gain * v.simulated.data()[p] + s.offset,
                  off = v.measured.data()[p] - mean;
     ++n, left += off * off, chance += noise.variance(mean);
+    if (!chance_of_yields.empty()) chance += s.gain * s.gain * chance_of_yields.data()[p];
     sum += mean, squares += mean * mean;
   }
   const double contrast = squares / n - sum * sum / (n * n);

@@ -19,8 +19,9 @@ SemNoise noise_of_rest(const PlacedImage& image, const Grid<double>& simulated,
 /// Of measured and simulated pixels that count; 0 where one of the two shows nothing.
 double correlation(const RefinedView& view);
 
-/// Rms of what gain and offset leave, less what noise makes of it, over the signal's deviation.
+/// Rms of what gain and offset leave, less what noise and the chance of simulated yields (their
+/// variances; empty: none) make of it, over the signal's deviation.
 double unexplained_share(const RefinedView& view, const RefinedViewState& state,
-                         const SemNoise& noise);
+                         const SemNoise& noise, const Grid<double>& chance_of_yields);
 
 }  // namespace surf::workflow

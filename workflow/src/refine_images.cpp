@@ -21,8 +21,8 @@ namespace {
 constexpr double step_nm = 2;                            // by which modes are moved
 constexpr double step_deg = 1;                           // by which beams are tilted
 constexpr double least_margin = 8, largest_margin = 40;  // nm
-// All pixels of all images take their cascades from one library: what chance makes of a few would be
-// wrong everywhere, in levels and effects alike.
+// All pixels of all images take their cascades from one library: what chance makes of a few would
+// be wrong everywhere, in levels and effects alike.
 constexpr std::size_t least_cascades = 80'000;
 
 /// The detector that counts a signal, among `default_detectors` and the signal's own.

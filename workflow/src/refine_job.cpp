@@ -34,14 +34,15 @@ constexpr double unrelated = 0.3;   // correlation of images that show different
 constexpr double largest_step = 2;  // of an amplitude, over its prior deviation
 constexpr double settled = 0.7;     // over its deviation: nothing moves any more
 constexpr double settled_of_prior = 0.02;
-constexpr double shift_pixels = 3;        // what images' places may be off by
-constexpr double as_good = 0.03;          // correlations that differ by less
-constexpr double least_relief = 0.1;      // of the height, above or below the ground
-constexpr double correlation_nm = 4;      // of what simulations are off by
-constexpr double wide_correlations = 10;  // they are off as much over wide parts
-constexpr double edges_per_spacing = 3;   // triangles between bumps
-constexpr double bend_errors = 1;         // at a deviation from the mean, as much again
-constexpr double blur_error_nm2 = 4;      // secondaries escape from within 2 nm more or less
+constexpr double shift_pixels = 3;            // what images' places may be off by
+constexpr double as_good = 0.03;              // correlations that differ by less
+constexpr double least_relief = 0.1;          // of the height, above or below the ground
+constexpr double correlation_nm = 4;          // of what simulations are off by
+constexpr double wide_correlations = 10;      // they are off as much over wide parts
+constexpr double edges_per_spacing = 3;       // triangles between bumps
+constexpr double bend_errors = 1;             // at a deviation from the mean, as much again
+constexpr double blur_error_nm2 = 4;          // secondaries escape from within 2 nm more or less
+constexpr std::uint64_t half_seed = 500'000;  // the random numbers of images' other halves
 constexpr double most_unexplained = 0.5;
 constexpr double beside_nm = 40;                          // what images show, the mesh is fine, too
 constexpr double sheet_heights = 3, least_sheet_nm = 80;  // how far a sheet goes on
@@ -96,7 +97,7 @@ class Refinement {
       : job_(job), told_(reporter),
         kept_(job.cache, reporter.counting("cascades"), reporter.on_note),
         libraries_(kept_, job.threads), images_(job, libraries_), states_(job.images.size()),
-        noise_(job.images.size()) {
+        noise_(job.images.size()), chance_(job.images.size()) {
     for (const SemInput& input : job.images) {
       RefinedView view;
       view.placement = input.image.placement();
@@ -150,29 +151,37 @@ class Refinement {
     return out;
   }
 
-  /// A sheet goes on beside what images show.
+  /// A sheet goes on beside what images show, where simulations can still take it as a half-space:
+  /// the rim of an undercut line's end folds back, and does so more the wider it is.
   void extend_start() {
     base_ = job_.start;
     std::string reason;
     const double by_nm = sheet_heights * bounds(base_).size_nm().z + least_sheet_nm;
-    if (std::optional<TriangleMesh> wide = extend_open_sheet(base_, by_nm, reason))
-      base_ = std::move(*wide);
+    std::optional<TriangleMesh> wide = extend_open_sheet(base_, by_nm, reason);
+    if (wide && extend_open_sheet(*wide, by_nm, reason)) base_ = std::move(*wide);
   }
 
   void render(const TriangleMesh& mesh, std::size_t v, std::uint64_t seed) {
-    RefineImage image =
-        images_.render(mesh, v, states_[v], job_.electrons, seed, job_.threads, {{}, told_.cancel});
-    views_[v].simulated = std::move(image.mean);
-    views_[v].variance = std::move(image.variance);
-    summary_.primaries += job_.electrons * static_cast<std::int64_t>(views_[v].simulated.size());
+    RefinedView& view = views_[v];
+    const std::int64_t half = std::max<std::int64_t>(1, job_.electrons / 2);
+    const auto simulate = [&](std::uint64_t own) {
+      return images_.render(mesh, v, states_[v], half, own, job_.threads, {{}, told_.cancel});
+    };
+    RefineImage first = simulate(seed), second = simulate(seed + half_seed);
+    view.simulated = first.mean, chance_[v] = first.variance;
+    for (std::size_t p = 0; p < view.simulated.size(); ++p) {
+      view.simulated.data()[p] = 0.5 * (first.mean.data()[p] + second.mean.data()[p]);
+      chance_[v].data()[p] = 0.25 * (first.variance.data()[p] + second.variance.data()[p]);
+    }
+    view.first_half = std::move(first.mean), view.second_half = std::move(second.mean);
+    summary_.primaries += 2 * half * static_cast<std::int64_t>(view.simulated.size());
   }
 
   /// Gains and offsets; what pixels may be off by: noise, the simulation's chance, and what
   /// simulations are off by, which is alike in neighbours, so that each tells less.
   void weigh(std::size_t v) {
     RefinedView& view = views_[v];
-    const Grid<double> chance = view.variance;
-    std::ranges::fill(view.variance.data(), 1.0);
+    view.variance = Grid<double>(view.measured.width(), view.measured.height(), 1);
     fit_gain(view, states_[v]);
     const RefinedViewState& s = states_[v];
     noise_[v] =
@@ -185,7 +194,7 @@ class Refinement {
     for (std::size_t p = 0; p < levels.size(); ++p) {
       const double off = job_.model_error * (levels[p] - middle);
       view.variance.data()[p] = noise_[v].variance(levels[p]) + off * off * alike +
-                                (flat_noise_[v] ? s.gain * s.gain * chance.data()[p] : 0);
+                                (flat_noise_[v] ? s.gain * s.gain * chance_[v].data()[p] : 0);
     }
     double squares = 0;
     for (const double level : levels) squares += (level - middle) * (level - middle);
@@ -196,6 +205,12 @@ class Refinement {
     view.bend_error = bend_errors * job_.model_error;
     view.blur_error_nm2 = job_.model_error > 0 ? blur_error_nm2 : 0;
     fit_gain(view, states_[v]);
+  }
+
+  /// Noise by what simulations leave has their chance in it.
+  double unexplained_of(std::size_t v) const {
+    return unexplained_share(views_[v], states_[v], noise_[v],
+                             flat_noise_[v] ? chance_[v] : Grid<double>{});
   }
 
   /// Where each image looks: the best shift of it over what the start looks like.
@@ -228,7 +243,7 @@ class Refinement {
             "Check `beam.tilt` and `beam.azimuth` of this image, its pixel size, and the start");
       weigh(v);
       summary_.images.push_back({});
-      summary_.images[v].unexplained_before = unexplained_share(views_[v], states_[v], noise_[v]);
+      summary_.images[v].unexplained_before = unexplained_of(v);
     }
   }
 
@@ -343,9 +358,7 @@ class Refinement {
       if (held_) continue;
       for (std::size_t v = 0; v < views_.size(); ++v) {
         states_[v] = part_way(states[v], fit.views[v], share);
-        const Grid<double> variance = views_[v].variance;
-        render(now, v, seed);
-        views_[v].variance = variance;  // the same weights as before
+        render(now, v, seed);  // the weights stay as before
         fit_gain(views_[v], states_[v]);
       }
       if (misfit(blurred_views(blur_px), states_, amplitudes_, prior) < misfit_before) {
@@ -411,7 +424,7 @@ class Refinement {
       out.residual.data()[p] =
           (out.residual.data()[p] - s) / std::sqrt(views_[v].variance.data()[p]);
     }
-    out.unexplained = unexplained_share(views_[v], states_[v], noise_[v]);
+    out.unexplained = unexplained_of(v);
     const Grid<Vec3> seen = images_.seen(summary_.mesh, v, states_[v]);
     const TriangleTree tree(summary_.mesh);
     out.sensitivity_per_nm = Grid<double>(seen.width(), seen.height(), 0);
@@ -450,6 +463,7 @@ class Refinement {
   std::vector<RefinedViewState> states_;
   std::vector<std::optional<SemNoise>> flat_noise_;
   std::vector<SemNoise> noise_;
+  std::vector<Grid<double>> chance_;  // of the simulated images: variances of yields
   TriangleMesh base_;
   double edge_nm_ = 0;
   std::vector<MeshMode> modes_;

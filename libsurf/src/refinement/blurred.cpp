@@ -43,6 +43,7 @@ RefinedView blurred(const RefinedView& view, double sigma_px) {
   for (std::size_t p = 0; p < out.measured.size(); ++p)
     if (!view.used.includes(p)) out.measured.data()[p] = view.simulated.data()[p];
   blur(out.measured), blur(out.simulated);
+  if (!out.first_half.empty()) blur(out.first_half), blur(out.second_half);
   const auto blur_effect = [&](ModeEffect& e) {
     if (e.pixels.empty()) return;
     for (std::vector<double>* values : {&e.first, &e.second}) {

@@ -19,6 +19,7 @@ enum StateNumber { gain, offset, shift_x, shift_y, tilt_x, tilt_y, bend, blur, s
 void check(const RefinedView& v, std::size_t modes) {
   const std::size_t n = v.measured.size();
   bool right = n > 0 && v.simulated.size() == n && v.variance.size() == n &&
+               (v.first_half.empty() || (v.first_half.size() == n && v.second_half.size() == n)) &&
                (v.used.empty() || v.used.size() == n) && v.effects.size() == modes;
   for (const ModeEffect& e : v.effects)
     right = right && e.first.size() == e.pixels.size() && e.second.size() == e.pixels.size();
@@ -55,9 +56,16 @@ Column all_pixels(const Grid<double>& values, double factor) {
   return out;
 }
 
+/// One of the two simulations of a view.
+const Grid<double>& first_of(const RefinedView& v) {
+  return v.first_half.empty() ? v.simulated : v.first_half;
+}
+const Grid<double>& second_of(const RefinedView& v) {
+  return v.first_half.empty() ? v.simulated : v.second_half;
+}
+
 /// The slope of an image along x or y per nm, averaged over three rows or columns.
-Grid<double> slope(const RefinedView& v, bool along_x) {
-  const Grid<double>& s = v.simulated;
+Grid<double> slope(const RefinedView& v, const Grid<double>& s, bool along_x) {
   const int w = s.width(), h = s.height();
   Grid<double> out(w, h);
   const double pitch = along_x ? v.placement.pitch_x_nm : v.placement.pitch_y_nm;
@@ -77,7 +85,7 @@ Grid<double> slope(const RefinedView& v, bool along_x) {
 
 /// What a bent relation between yields adds to the simulated ones, per unit of `bend`: squares of
 /// the distance from their mean, over their standard deviation.
-Grid<double> bend_shape(const RefinedView& v) {
+Grid<double> bend_shape(const RefinedView& v, const Grid<double>& simulated) {
   const auto n = static_cast<double>(v.simulated.size());
   double sum = 0, squares = 0;
   for (const double s : v.simulated.data()) sum += s;
@@ -86,7 +94,7 @@ Grid<double> bend_shape(const RefinedView& v) {
   Grid<double> out(v.simulated.width(), v.simulated.height(), 0);
   if (deviation > 0)
     for (std::size_t p = 0; p < out.size(); ++p) {
-      const double off = v.simulated.data()[p] - sum / n;
+      const double off = simulated.data()[p] - sum / n;
       out.data()[p] = off * off / deviation;
     }
   return out;
@@ -94,8 +102,7 @@ Grid<double> bend_shape(const RefinedView& v) {
 
 /// What a wider spot adds to the simulated yields, per nm^2 of its variance: half the Laplacian
 /// (the first term of a Gaussian filter), averaged over three rows or columns.
-Grid<double> blur_shape(const RefinedView& v) {
-  const Grid<double>& s = v.simulated;
+Grid<double> blur_shape(const RefinedView& v, const Grid<double>& s) {
   const int w = s.width(), h = s.height();
   const auto at = [&](int x, int y) { return s(std::clamp(x, 0, w - 1), std::clamp(y, 0, h - 1)); };
   const double px = v.placement.pitch_x_nm, py = v.placement.pitch_y_nm;
@@ -172,6 +179,22 @@ class WideBumps {
   int across_, along_;
 };
 
+/// What a simulation of the view is off by, in measured units.
+Grid<double> error_of(const RefinedView& view, const RefinedViewState& state,
+                      const Grid<double>& simulated) {
+  Grid<double> out(view.measured.width(), view.measured.height(), 0);
+  const auto add = [&](const Grid<double>& shape, double factor) {
+    for (std::size_t p = 0; p < out.size(); ++p) out.data()[p] += factor * shape.data()[p];
+  };
+  if (state.bend != 0) add(bend_shape(view, simulated), state.gain * state.bend);
+  if (state.blur_nm2 != 0) add(blur_shape(view, simulated), state.gain * state.blur_nm2);
+  if (state.wide.empty()) return out;
+  const WideBumps bumps(view);
+  for (std::size_t p = 0; p < out.size(); ++p)
+    bumps.at(p, [&](std::size_t bump, double share) { out.data()[p] += share * state.wide[bump]; });
+  return out;
+}
+
 Eigen::Map<const Eigen::MatrixXd> square(const std::vector<double>& values, std::size_t n) {
   return {values.data(), static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n)};
 }
@@ -204,6 +227,7 @@ void add_view(const Eigen::MatrixXd& own, Eigen::Index modes, Eigen::Index at,
 ViewEquations equations_of(const RefinedView& view, const RefinedViewState& state) {
   const std::size_t pixels = view.measured.size();
   const std::vector<double> weights = weights_of(view);
+  const Grid<double>&one = first_of(view), &other = second_of(view);
   std::vector<Column> first, second;
   const auto add_effect = [&](const ModeEffect& e) {
     first.push_back(column_of(e.pixels, e.first, state.gain));
@@ -213,24 +237,33 @@ ViewEquations equations_of(const RefinedView& view, const RefinedViewState& stat
     first.push_back(column), second.push_back(std::move(column));
   };
   for (const ModeEffect& e : view.effects) add_effect(e);
-  add(all_pixels(view.simulated, 1));
+  const auto add_of = [&](const auto& shape, double factor) {
+    first.push_back(all_pixels(shape(one), factor));
+    second.push_back(all_pixels(shape(other), factor));
+  };
+  add_of([](const Grid<double>& s) { return s; }, 1);
   add(all_pixels(Grid<double>(view.measured.width(), view.measured.height(), 1), 1));
-  add(all_pixels(slope(view, true), state.gain));
-  add(all_pixels(slope(view, false), state.gain));
+  for (const bool along_x : {true, false})
+    add_of([&](const Grid<double>& s) { return slope(view, s, along_x); }, state.gain);
   add_effect(view.tilt_x), add_effect(view.tilt_y);
-  add(all_pixels(bend_shape(view), state.gain));
-  add(all_pixels(blur_shape(view), state.gain));
+  add_of([&](const Grid<double>& s) { return bend_shape(view, s); }, state.gain);
+  add_of([&](const Grid<double>& s) { return blur_shape(view, s); }, state.gain);
   for (Column& wide : WideBumps(view).columns()) add(std::move(wide));
   const Eigen::MatrixXd a = dense(first, pixels), b = dense(second, pixels);
   const Eigen::Map<const Eigen::VectorXd> w(weights.data(), static_cast<Eigen::Index>(pixels));
-  const Grid<double> error = simulation_error(view, state);
-  Eigen::VectorXd left(static_cast<Eigen::Index>(pixels));
-  for (std::size_t p = 0; p < pixels; ++p)
-    left[static_cast<Eigen::Index>(p)] = view.measured.data()[p] - state.offset -
-                                         state.gain * view.simulated.data()[p] - error.data()[p];
+  // What one simulation leaves of the image, weighted: to be multiplied by columns of the other.
+  const auto left_by = [&](const Grid<double>& simulated) {
+    const Grid<double> error = error_of(view, state, simulated);
+    Eigen::VectorXd left(static_cast<Eigen::Index>(pixels));
+    for (std::size_t p = 0; p < pixels; ++p)
+      left[static_cast<Eigen::Index>(p)] =
+          weights[p] * (view.measured.data()[p] - state.offset - state.gain * simulated.data()[p] -
+                        error.data()[p]);
+    return left;
+  };
   const Eigen::MatrixXd product = a.transpose() * w.asDiagonal() * b, mean = 0.5 * (a + b);
   return {0.5 * (product + product.transpose()), mean.transpose() * w.asDiagonal() * mean,
-          mean.transpose() * (w.asDiagonal() * left)};
+          0.5 * (a.transpose() * left_by(other) + b.transpose() * left_by(one))};
 }
 
 /// What is known of the numbers of a view's state, which begin at `at`. Gain and offset are free.
@@ -271,27 +304,19 @@ RefinedViewState moved_by(RefinedViewState s, const Eigen::VectorXd& by) {
 }  // namespace
 
 Grid<double> simulation_error(const RefinedView& view, const RefinedViewState& state) {
-  Grid<double> out(view.measured.width(), view.measured.height(), 0);
-  const auto add = [&](const Grid<double>& shape, double factor) {
-    for (std::size_t p = 0; p < out.size(); ++p) out.data()[p] += factor * shape.data()[p];
-  };
-  if (state.bend != 0) add(bend_shape(view), state.gain * state.bend);
-  if (state.blur_nm2 != 0) add(blur_shape(view), state.gain * state.blur_nm2);
-  if (state.wide.empty()) return out;
-  const WideBumps bumps(view);
-  for (std::size_t p = 0; p < out.size(); ++p)
-    bumps.at(p, [&](std::size_t bump, double share) { out.data()[p] += share * state.wide[bump]; });
-  return out;
+  return error_of(view, state, view.simulated);
 }
 
 void fit_gain(const RefinedView& view, RefinedViewState& state) {
   const std::vector<double> weights = weights_of(view);
   const Grid<double> error = simulation_error(view, state);
+  const Grid<double>&one = first_of(view), &other = second_of(view);
   double sum = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (std::size_t p = 0; p < weights.size(); ++p) {
     const double w = weights[p], s = view.simulated.data()[p],
                  m = view.measured.data()[p] - error.data()[p];
-    sum += w, x += w * s, y += w * m, xx += w * s * s, xy += w * s * m;
+    sum += w, x += w * s, y += w * m, xy += w * s * m;
+    xx += w * one.data()[p] * other.data()[p];
   }
   const double determinant = sum * xx - x * x;
   if (!(determinant > 0))

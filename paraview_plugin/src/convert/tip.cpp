@@ -2,6 +2,7 @@
 #include "convert/tip.h"
 
 #include "reports.h"
+#include "surf/core/error.h"
 #include "surf/io/tip_file.h"
 #include "surf/workflow/morphology_job.h"
 
@@ -13,6 +14,9 @@ Tip to_tip(vtkImageData* image, vtkDataArray* heights, const char* subject) {
 
 Tip to_tip_for(vtkImageData* image, vtkDataArray* heights, const HeightField& scan,
                const char* subject, std::vector<std::string>& warnings) {
+  if (!image)
+    throw UsageError(subject, "it is missing",
+                     "Choose the result Tip of Estimate Tip, an AFM Tip, or a tip that is read");
   return workflow::tip_for(to_tip(image, heights, subject), scan, subject, hear({}, warnings));
 }
 

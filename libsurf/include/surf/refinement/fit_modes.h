@@ -25,6 +25,10 @@ struct RefinedView {
   Grid<double> measured;
   Mask used;               ///< pixels that count; empty: all
   Grid<double> simulated;  ///< in yields
+  /// Two simulations with random numbers of their own, of which `simulated` is the mean; empty: it
+  /// has no chance. Their products have no chance's square, which would look like information and
+  /// like contrast.
+  Grid<double> first_half, second_half;
   Grid<double> variance;   ///< of `measured`, and of `simulated` times the gain squared, > 0
   std::vector<ModeEffect> effects;  ///< of each mode, in yields
   ModeEffect tilt_x, tilt_y;        ///< of the beam's tilt, per degree; empty: it is not fitted
