@@ -26,8 +26,9 @@ PROGRAM = os.environ.get("SEMSURF", str(ROOT / "build/bin/semsurf"))
 SCENE = ROOT / "samples/mesa80.toml"
 SCAN, MODEL, MESH = (str(ROOT / "samples" / name) for name in ("spikes.gsf", "si-1keV-3nm.json", "pyramid.stl"))
 CALL = (f"import semsurf; semsurf.simulate({str(SCENE)!r}, size=(256, 256), electrons=30, output='ours.exr')")
-DETECTOR = CALL.replace("output=", "detector='own:energy=..50eV', output=")
-FUNCTION = CALL.replace("output=", "acceptance={'own': lambda energy, direction: energy < 50}, output=")
+WITH_OWN = CALL.replace("ours.exr", "own.exr")
+DETECTOR = WITH_OWN.replace("output=", "detector='own:energy=..50eV', output=")
+FUNCTION = WITH_OWN.replace("output=", "acceptance={'own': lambda energy, direction: energy < 50}, output=")
 COMMAND = [PROGRAM, "simulate", str(SCENE), "--size", "256x256", "--electrons", "30", "-o", "theirs.exr", "-q"]
 
 
@@ -102,7 +103,7 @@ def main():
             functions.append(seconds([*python, FUNCTION], folder)[0] / seconds([*python, DETECTOR], folder)[0])
             starts.append(seconds([*python, "import semsurf"], folder)[1] - seconds([*python, "pass"], folder)[1])
         calls = list(table(folder))
-        same = (pathlib.Path(folder) / "ours.exr").stat().st_size == (pathlib.Path(folder) / "theirs.exr").stat().st_size
+        ours, theirs = ((pathlib.Path(folder) / name).read_bytes() for name in ("ours.exr", "theirs.exr"))
     for what, values in (("Python / program, processor time", ratios[0]), ("program / program, processor time", floor[0]),
                          ("Python / program, wall time", ratios[1]), ("program / program, wall time", floor[1]),
                          ("detector: function / text", functions)):
@@ -110,7 +111,7 @@ def main():
     halves = [min(least["program"][k::2]) for k in (0, 1)]
     print(f"{'least processor times: ratio, floor':34} {min(least['Python']) / min(halves):.4f}, {halves[0] / halves[1]:.4f}")
     print("import                             {:.3f} s ({:.3f} to {:.3f})".format(*interval(starts)))
-    print(f"one simulation                     {second[1]:.2f} s; files of {'one size' if same else 'DIFFERENT sizes'}")
+    print(f"one simulation                     {second[1]:.2f} s; files are {'the same' if ours == theirs else 'DIFFERENT'}")
 
     print("call        program, s  in Python, s")
     for name, program, ours in calls:

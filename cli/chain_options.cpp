@@ -194,6 +194,7 @@ void add_chain_options(CLI::App& app, ChainOptions& o) {
                       {"specimen", sem},
                       {"beam", sem},
                       {"job", sem},
+                      {"simulation", sem},
                       {"reconstruction.model", sem},
                       {"reconstruction.gains", sem},
                       {"reconstruction.offset", sem},

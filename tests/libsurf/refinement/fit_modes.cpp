@@ -250,6 +250,33 @@ TEST(FitModes, ChanceInEffectsIsNoInformation) {
   for (std::size_t k = 0; k < modes; ++k) EXPECT_LT(fit.information[0][k], 0.15 * as_it_looks);
 }
 
+// Chance in a simulated image looks like contrast that the measured one does not have.
+TEST(FitModes, ChanceInSimulatedImagesIsNoContrast) {
+  const std::vector<double> truth{1, -2, 0.5, 3, 0, -1};
+  RefinedView view = made_view(truth, 1, 1);
+  view.first_half = view.second_half = view.simulated;
+  NormalNumbers normal(8, 2);
+  constexpr double chance = 0.3;
+  for (std::size_t p = 0; p < view.simulated.size(); ++p) {
+    double &first = view.first_half.data()[p], &second = view.second_half.data()[p];
+    first += chance * normal(), second += chance * normal();
+    view.simulated.data()[p] = 0.5 * (first + second);
+    view.variance.data()[p] = 1 + 0.5 * 80 * 80 * chance * chance;
+  }
+  RefinedView at_its_word = view;
+  at_its_word.first_half = at_its_word.second_half = {};
+  RefinedViewState taken_in, known;
+  fit_gain(at_its_word, taken_in), fit_gain(view, known);
+  EXPECT_LT(taken_in.gain, 65);
+  EXPECT_NEAR(known.gain, 80, 6);
+  view.blur_error_nm2 = at_its_word.blur_error_nm2 = 4;
+  const ModeFit deceived = fit_modes({at_its_word}, {{80, 12}}, nothing, wide_prior(2)),
+                fit = fit_modes({view}, {{80, 12}}, nothing, wide_prior(2));
+  EXPECT_GT(deceived.views[0].blur_nm2, 2);  // a blurred image has less chance
+  EXPECT_LT(std::abs(fit.views[0].blur_nm2), 1);
+  EXPECT_NEAR(fit.views[0].gain, 80, 6);
+}
+
 TEST(FitModes, NoisyEffectsKeepTheirInformation) {
   const ModeFit clean = fit_modes({made_view(nothing, 5, 1)}, {{80, 12}}, nothing, wide_prior(5)),
                 noisy =

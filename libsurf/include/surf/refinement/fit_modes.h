@@ -29,7 +29,7 @@ struct RefinedView {
   /// has no chance. Their products have no chance's square, which would look like information and
   /// like contrast.
   Grid<double> first_half, second_half;
-  Grid<double> variance;   ///< of `measured`, and of `simulated` times the gain squared, > 0
+  Grid<double> variance;  ///< of `measured`, and of `simulated` times the gain squared, > 0
   std::vector<ModeEffect> effects;  ///< of each mode, in yields
   ModeEffect tilt_x, tilt_y;        ///< of the beam's tilt, per degree; empty: it is not fitted
   double tilt_error_deg = 0;        ///< prior of the tilts
