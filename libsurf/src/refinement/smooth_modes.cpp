@@ -16,6 +16,10 @@ constexpr int degree = 2;
 /// Legendre's polynomials up to the second degree, scaled to a largest magnitude of 1 on [-1, 1].
 std::array<double, degree + 1> polynomials(double t) { return {1, t, 0.5 * (3 * t * t - 1)}; }
 
+/// Likewise for displacements along z by the place along z: the ground stays, so that the amplitude
+/// is what the top moves by.
+std::array<double, degree + 1> above_ground(double t) { return {1, 0.5 * (1 + t), 1 - t * t}; }
+
 /// The place within the box, each coordinate from -1 to 1.
 Vec3 place_in(const Box& box, const Vec3& p) {
   const Vec3 middle = box.center_nm(), size = box.size_nm();
@@ -60,9 +64,10 @@ std::vector<MeshMode> smooth_modes(const TriangleMesh& mesh, const Box& box, Smo
           mode.vertical = direction.z > 0;
           for (std::size_t v = 0; v < mesh.vertices_nm.size(); ++v) {
             const Vec3 t = place_in(box, mesh.vertices_nm[v]);
-            const double size = polynomials(t.x)[static_cast<std::size_t>(a)] *
-                                polynomials(t.y)[static_cast<std::size_t>(b)] *
-                                polynomials(t.z)[static_cast<std::size_t>(c)];
+            const double size =
+                polynomials(t.x)[static_cast<std::size_t>(a)] *
+                polynomials(t.y)[static_cast<std::size_t>(b)] *
+                (mode.vertical ? above_ground(t.z) : polynomials(t.z))[static_cast<std::size_t>(c)];
             if (size != 0 && !rim[v])
               mode.moves.push_back({static_cast<std::uint32_t>(v), direction * size});
           }

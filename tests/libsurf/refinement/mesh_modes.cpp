@@ -77,6 +77,16 @@ TEST(SmoothModes, OfWallsAreSizesLeansAndTapers) {
   EXPECT_EQ(std::ranges::count_if(modes, &MeshMode::vertical), 1);
 }
 
+TEST(SmoothModes, TheHeightIsThatOverTheGround) {
+  const TriangleMesh mesh = plate(60);
+  const std::vector<MeshMode> modes = smooth_modes(mesh, bounds(mesh), SmoothKind::walls);
+  const auto height = std::ranges::find_if(modes, &MeshMode::vertical);
+  ASSERT_NE(height, modes.end());
+  EXPECT_FALSE(height->moves.empty());
+  for (const MeshMode::Move& move : height->moves)
+    EXPECT_NEAR(move.by.z, mesh.vertices_nm[move.vertex].z / 60, 1e-12);
+}
+
 TEST(BumpModes, AddUpToTheSurfaceMovingAlongItsNormals) {
   const TriangleMesh mesh = plate(60);
   std::vector<bool> may_move;

@@ -27,8 +27,9 @@ struct MeshMode {
 
 /// Displacements that are polynomials of the place, up to the second degree in each direction of
 /// space: scales, turns, shears, tapers (the angles of walls), bends; no shifts, which no image
-/// tells. Beside the box a place counts as the nearest one of the box, so that what is beyond it
-/// moves alike; the rim of an open mesh stays. None moves a vertex by more than 1 nm per nm.
+/// tells. Of heights the lower end of the box stays. Beside the box a place counts as the nearest
+/// one of the box, so that what is beyond it moves alike; the rim of an open mesh stays. None moves
+/// a vertex by more than 1 nm per nm.
 enum class SmoothKind {
   walls,  ///< sizes along x, y and z; walls that lean or taper along x and y: 7 modes
   all,    ///< 27 modes
