@@ -34,8 +34,9 @@ constexpr double unrelated = 0.3;   // correlation of images that show different
 constexpr double largest_step = 2;  // of an amplitude, over its prior deviation
 constexpr double settled = 0.7;     // over its deviation: nothing moves any more
 constexpr double settled_of_prior = 0.02;
-constexpr double shift_pixels = 3;            // what images' places may be off by
-constexpr double as_good = 0.03;              // correlations that differ by less
+constexpr double cut_short = 0.3, settled_by_chance = 2;  // of a step; over the deviation
+constexpr double shift_pixels = 3;                        // what images' places may be off by
+constexpr double as_good = 0.03;                          // correlations that differ by less
 constexpr double least_relief = 0.1;          // of the height, above or below the ground
 constexpr double correlation_nm = 4;          // of what simulations are off by
 constexpr double wide_correlations = 10;      // they are off as much over wide parts
@@ -317,14 +318,18 @@ class Refinement {
     look(own);
     for (int round = 0; round < count; ++round) {
       const Watch watch = told_.watch(double(round) / count, double(round + 1) / count);
-      images_.add_effects(base_, modes_, amplitudes_, states_, electrons, own + 1, watch, views_,
+      // Each round has random numbers of its own, so that one whose step failed is not repeated.
+      const std::uint64_t of_round = own + 1 + 2 * static_cast<std::uint64_t>(round);
+      images_.add_effects(base_, modes_, amplitudes_, states_, electrons, of_round, watch, views_,
                           summary_.primaries);
       const std::vector<RefinedView> seen = blurred_views(blur_px);
       const ModeFit fit = fit_modes(seen, states_, amplitudes_, covariance);
       summary_.covariance = fit.covariance;
       information_ = fit.information;
       const double taken = take(fit, covariance, own, blur_px);
-      settled_ = taken * fit.move < settled || taken * fit.step < settled_of_prior;
+      // A step that had to be cut short has not arrived, unless chance alone can have stopped it.
+      settled_ = fit.move < (taken < cut_short ? settled_by_chance : settled) ||
+                 fit.step < settled_of_prior;
       if (settled_) break;
     }
   }
