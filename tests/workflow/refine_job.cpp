@@ -107,6 +107,14 @@ TEST_F(RefineJobTest, FindsWallsThatLean) {
     EXPECT_TRUE(std::filesystem::exists(job_.folder / file)) << file;
 }
 
+// Its rim folds back at its ends, seen from above.
+TEST_F(RefineJobTest, AnUndercutLineMayBeTheStart) {
+  job_.start = line(40, 100);
+  job_.folder.clear();
+  job_.electrons = 20, job_.effect_electrons = 4, job_.smooth_rounds = 1;
+  EXPECT_EQ(run(job_).self_intersections, 0u);
+}
+
 TEST_F(RefineJobTest, RefusesImagesOfSomethingElse) {
   job_.folder.clear();
   for (double& v : job_.images[1].image.values.data()) v = 0;

@@ -37,14 +37,16 @@ double correlation(const RefinedView& v) {
 }
 
 double unexplained_share(const RefinedView& v, const RefinedViewState& s, const SemNoise& noise,
-                         const Grid<double>& chance_of_yields) {
+                         const Grid<double>& chance_in_noise) {
   double n = 0, left = 0, sum = 0, squares = 0, chance = 0;
   for (std::size_t p = 0; p < v.measured.size(); ++p) {
     if (!v.used.includes(p)) continue;
-    const double mean = s.gain * v.simulated.data()[p] + s.offset,
-                 off = v.measured.data()[p] - mean;
-    ++n, left += off * off, chance += noise.variance(mean);
-    if (!chance_of_yields.empty()) chance += s.gain * s.gain * chance_of_yields.data()[p];
+    const auto off = [&](const Grid<double>& simulated) {
+      return v.measured.data()[p] - s.gain * simulated.data()[p] - s.offset;
+    };
+    const double mean = s.gain * v.simulated.data()[p] + s.offset;
+    ++n, left += off(v.first_half) * off(v.second_half), chance += noise.variance(mean);
+    if (!chance_in_noise.empty()) chance -= s.gain * s.gain * chance_in_noise.data()[p];
     sum += mean, squares += mean * mean;
   }
   const double contrast = squares / n - sum * sum / (n * n);

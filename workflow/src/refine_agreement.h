@@ -19,9 +19,10 @@ SemNoise noise_of_rest(const PlacedImage& image, const Grid<double>& simulated,
 /// Of measured and simulated pixels that count; 0 where one of the two shows nothing.
 double correlation(const RefinedView& view);
 
-/// Rms of what gain and offset leave, less what noise and the chance of simulated yields (their
-/// variances; empty: none) make of it, over the signal's deviation.
+/// Rms of what gain and offset leave of an image with two simulations, less what noise makes of it,
+/// over the signal's deviation. `chance_in_noise`: variances of simulated yields that the noise
+/// contains; empty: none.
 double unexplained_share(const RefinedView& view, const RefinedViewState& state,
-                         const SemNoise& noise, const Grid<double>& chance_of_yields);
+                         const SemNoise& noise, const Grid<double>& chance_in_noise);
 
 }  // namespace surf::workflow

@@ -44,7 +44,7 @@ constexpr double edges_per_spacing = 3;       // triangles between bumps
 constexpr double bend_errors = 1;             // at a deviation from the mean, as much again
 constexpr double blur_error_nm2 = 4;          // secondaries escape from within 2 nm more or less
 constexpr std::uint64_t half_seed = 500'000;  // the random numbers of images' other halves
-constexpr double most_unexplained = 0.5;
+constexpr double most_unexplained = 0.25;
 constexpr double beside_nm = 40;                          // what images show, the mesh is fine, too
 constexpr double sheet_heights = 3, least_sheet_nm = 80;  // how far a sheet goes on
 constexpr int few_modes = 4;  // times as many electrons for the effects of a few modes
@@ -211,7 +211,7 @@ class Refinement {
   /// Noise by what simulations leave has their chance in it.
   double unexplained_of(std::size_t v) const {
     return unexplained_share(views_[v], states_[v], noise_[v],
-                             flat_noise_[v] ? chance_[v] : Grid<double>{});
+                             flat_noise_[v] ? Grid<double>{} : chance_[v]);
   }
 
   /// Where each image looks: the best shift of it over what the start looks like.

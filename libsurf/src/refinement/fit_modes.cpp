@@ -309,14 +309,17 @@ Grid<double> simulation_error(const RefinedView& view, const RefinedViewState& s
 
 void fit_gain(const RefinedView& view, RefinedViewState& state) {
   const std::vector<double> weights = weights_of(view);
-  const Grid<double> error = simulation_error(view, state);
   const Grid<double>&one = first_of(view), &other = second_of(view);
+  const Grid<double> error_of_one = error_of(view, state, one),
+                     error_of_other = error_of(view, state, other);
   double sum = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (std::size_t p = 0; p < weights.size(); ++p) {
-    const double w = weights[p], s = view.simulated.data()[p],
-                 m = view.measured.data()[p] - error.data()[p];
-    sum += w, x += w * s, y += w * m, xy += w * s * m;
-    xx += w * one.data()[p] * other.data()[p];
+    const double w = weights[p], m = view.measured.data()[p], first = one.data()[p],
+                 second = other.data()[p], m_first = m - error_of_one.data()[p],
+                 m_second = m - error_of_other.data()[p];
+    sum += w, x += 0.5 * w * (first + second), y += 0.5 * w * (m_first + m_second);
+    xy += 0.5 * w * (first * m_second + second * m_first);
+    xx += w * first * second;
   }
   const double determinant = sum * xx - x * x;
   if (!(determinant > 0))
@@ -404,12 +407,16 @@ double misfit(const std::vector<RefinedView>& views, const std::vector<RefinedVi
     const RefinedView& view = views[v];
     const RefinedViewState& s = states[v];
     const std::vector<double> weights = weights_of(view);
-    const Grid<double> error = simulation_error(view, s);
-    for (std::size_t p = 0; p < weights.size(); ++p) {
-      const double off =
-          view.measured.data()[p] - s.offset - s.gain * view.simulated.data()[p] - error.data()[p];
-      sum += weights[p] * off * off;
-    }
+    const auto left_by = [&](const Grid<double>& simulated) {
+      Grid<double> left = error_of(view, s, simulated);
+      for (std::size_t p = 0; p < left.size(); ++p)
+        left.data()[p] =
+            view.measured.data()[p] - s.offset - s.gain * simulated.data()[p] - left.data()[p];
+      return left;
+    };
+    const Grid<double> first = left_by(first_of(view)), second = left_by(second_of(view));
+    for (std::size_t p = 0; p < weights.size(); ++p)
+      sum += weights[p] * first.data()[p] * second.data()[p];
     off_by(s.shift_x_nm - view.shift_x_nm, view.shift_error_nm);
     off_by(s.shift_y_nm - view.shift_y_nm, view.shift_error_nm);
     off_by(s.tilt_x_deg, view.tilt_error_deg);

@@ -87,7 +87,8 @@ ModeFit fit_modes(const std::vector<RefinedView>& views,
                   const std::vector<RefinedViewState>& states,
                   const std::vector<double>& amplitudes_nm, const std::vector<double>& prior);
 
-/// Minus twice the log of the posterior density, but for a constant: what `fit_modes` makes small.
+/// Minus twice the log of the posterior density, but for a constant and without the simulations'
+/// chance: what `fit_modes` makes small.
 double misfit(const std::vector<RefinedView>& views, const std::vector<RefinedViewState>& states,
               const std::vector<double>& amplitudes_nm, const std::vector<double>& prior);
 
