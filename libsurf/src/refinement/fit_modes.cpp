@@ -179,20 +179,14 @@ class WideBumps {
   int across_, along_;
 };
 
-/// What a simulation of the view is off by, in measured units.
-Grid<double> error_of(const RefinedView& view, const RefinedViewState& state,
-                      const Grid<double>& simulated) {
-  Grid<double> out(view.measured.width(), view.measured.height(), 0);
-  const auto add = [&](const Grid<double>& shape, double factor) {
-    for (std::size_t p = 0; p < out.size(); ++p) out.data()[p] += factor * shape.data()[p];
-  };
-  if (state.bend != 0) add(bend_shape(view, simulated), state.gain * state.bend);
-  if (state.blur_nm2 != 0) add(blur_shape(view, simulated), state.gain * state.blur_nm2);
-  if (state.wide.empty()) return out;
-  const WideBumps bumps(view);
-  for (std::size_t p = 0; p < out.size(); ++p)
-    bumps.at(p, [&](std::size_t bump, double share) { out.data()[p] += share * state.wide[bump]; });
-  return out;
+/// What a simulation leaves of the image, in measured units.
+Grid<double> left_by(const Grid<double>& simulated, const RefinedView& view,
+                     const RefinedViewState& state) {
+  Grid<double> left = simulation_error(view, state, simulated);
+  for (std::size_t p = 0; p < left.size(); ++p)
+    left.data()[p] =
+        view.measured.data()[p] - state.offset - state.gain * simulated.data()[p] - left.data()[p];
+  return left;
 }
 
 Eigen::Map<const Eigen::MatrixXd> square(const std::vector<double>& values, std::size_t n) {
@@ -251,19 +245,16 @@ ViewEquations equations_of(const RefinedView& view, const RefinedViewState& stat
   for (Column& wide : WideBumps(view).columns()) add(std::move(wide));
   const Eigen::MatrixXd a = dense(first, pixels), b = dense(second, pixels);
   const Eigen::Map<const Eigen::VectorXd> w(weights.data(), static_cast<Eigen::Index>(pixels));
-  // What one simulation leaves of the image, weighted: to be multiplied by columns of the other.
-  const auto left_by = [&](const Grid<double>& simulated) {
-    const Grid<double> error = error_of(view, state, simulated);
-    Eigen::VectorXd left(static_cast<Eigen::Index>(pixels));
-    for (std::size_t p = 0; p < pixels; ++p)
-      left[static_cast<Eigen::Index>(p)] =
-          weights[p] * (view.measured.data()[p] - state.offset - state.gain * simulated.data()[p] -
-                        error.data()[p]);
-    return left;
+  // What one simulation leaves of the image is multiplied by columns of the other.
+  const Grid<double> left_by_one = left_by(one, view, state),
+                     left_by_other = left_by(other, view, state);
+  const auto column = [&](const Grid<double>& left) {
+    return Eigen::Map<const Eigen::VectorXd>(left.data().data(), static_cast<Eigen::Index>(pixels));
   };
   const Eigen::MatrixXd product = a.transpose() * w.asDiagonal() * b, mean = 0.5 * (a + b);
   return {0.5 * (product + product.transpose()), mean.transpose() * w.asDiagonal() * mean,
-          0.5 * (a.transpose() * left_by(other) + b.transpose() * left_by(one))};
+          0.5 * (a.transpose() * (w.asDiagonal() * column(left_by_other)) +
+                 b.transpose() * (w.asDiagonal() * column(left_by_one)))};
 }
 
 /// What is known of the numbers of a view's state, which begin at `at`. Gain and offset are free.
@@ -303,15 +294,26 @@ RefinedViewState moved_by(RefinedViewState s, const Eigen::VectorXd& by) {
 
 }  // namespace
 
-Grid<double> simulation_error(const RefinedView& view, const RefinedViewState& state) {
-  return error_of(view, state, view.simulated);
+Grid<double> simulation_error(const RefinedView& view, const RefinedViewState& state,
+                              const Grid<double>& simulated) {
+  Grid<double> out(view.measured.width(), view.measured.height(), 0);
+  const auto add = [&](const Grid<double>& shape, double factor) {
+    for (std::size_t p = 0; p < out.size(); ++p) out.data()[p] += factor * shape.data()[p];
+  };
+  if (state.bend != 0) add(bend_shape(view, simulated), state.gain * state.bend);
+  if (state.blur_nm2 != 0) add(blur_shape(view, simulated), state.gain * state.blur_nm2);
+  if (state.wide.empty()) return out;
+  const WideBumps bumps(view);
+  for (std::size_t p = 0; p < out.size(); ++p)
+    bumps.at(p, [&](std::size_t bump, double share) { out.data()[p] += share * state.wide[bump]; });
+  return out;
 }
 
 void fit_gain(const RefinedView& view, RefinedViewState& state) {
   const std::vector<double> weights = weights_of(view);
   const Grid<double>&one = first_of(view), &other = second_of(view);
-  const Grid<double> error_of_one = error_of(view, state, one),
-                     error_of_other = error_of(view, state, other);
+  const Grid<double> error_of_one = simulation_error(view, state, one),
+                     error_of_other = simulation_error(view, state, other);
   double sum = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (std::size_t p = 0; p < weights.size(); ++p) {
     const double w = weights[p], m = view.measured.data()[p], first = one.data()[p],
@@ -407,14 +409,8 @@ double misfit(const std::vector<RefinedView>& views, const std::vector<RefinedVi
     const RefinedView& view = views[v];
     const RefinedViewState& s = states[v];
     const std::vector<double> weights = weights_of(view);
-    const auto left_by = [&](const Grid<double>& simulated) {
-      Grid<double> left = error_of(view, s, simulated);
-      for (std::size_t p = 0; p < left.size(); ++p)
-        left.data()[p] =
-            view.measured.data()[p] - s.offset - s.gain * simulated.data()[p] - left.data()[p];
-      return left;
-    };
-    const Grid<double> first = left_by(first_of(view)), second = left_by(second_of(view));
+    const Grid<double> first = left_by(first_of(view), view, s),
+                       second = left_by(second_of(view), view, s);
     for (std::size_t p = 0; p < weights.size(); ++p)
       sum += weights[p] * first.data()[p] * second.data()[p];
     off_by(s.shift_x_nm - view.shift_x_nm, view.shift_error_nm);

@@ -156,7 +156,7 @@ TEST(FitModes, WhatSimulationsAreOffByInWidePartsIsNoSurface) {
                 known = fit_modes({views[1]}, {{80, 12}}, nothing, wide_prior(2));
   EXPECT_GT(largest(taken_in), 10);
   EXPECT_LT(largest(known), 3);
-  const Grid<double> found = simulation_error(views[1], known.views[0]);
+  const Grid<double> found = simulation_error(views[1], known.views[0], views[1].simulated);
   EXPECT_NEAR(found(15, 2) - found(1, 2), 8 * (std::sin(1.5) - std::sin(0.1)), 4);
 }
 
@@ -179,7 +179,7 @@ TEST(FitModes, BentYieldsAreNoSurface) {
   const ModeFit known = fit_modes({view}, {{80, 12}}, nothing, wide_prior(2));
   EXPECT_GT(largest(taken_in), 10);
   EXPECT_LT(largest(known), 3);
-  const Grid<double> found = simulation_error(view, known.views[0]);
+  const Grid<double> found = simulation_error(view, known.views[0], view.simulated);
   const double bright = shape(23, 0) - 1.3, middle = shape(14, 10) - 1.3;
   EXPECT_NEAR(found(23, 0) - found(14, 10), 40 * (bright * bright - middle * middle), 5);
 }

@@ -70,8 +70,9 @@ struct ModeFit {
 /// Gain and offset of an image by the weighted least squares of its pixels.
 void fit_gain(const RefinedView& view, RefinedViewState& state);
 
-/// What simulations are off by at each pixel, in measured units.
-Grid<double> simulation_error(const RefinedView& view, const RefinedViewState& state);
+/// What a simulation of the view is off by at each pixel by its state, in measured units.
+Grid<double> simulation_error(const RefinedView& view, const RefinedViewState& state,
+                              const Grid<double>& simulated);
 
 /// The view as a Gaussian of `sigma_px` pixels (>= 0) blurs it, measured and simulated alike, so
 /// that steps reach farther than an edge is wide. Effects must be of all pixels in their order, or
