@@ -26,6 +26,8 @@ namespace surf {
 /// sampled at another pitch, noisy (AR(1)) and eroded: the two are not one image resampled.
 struct RegistrationScene {
   PlacedImage sem, simulated;
+  HeightField scan;    ///< the tip's image, as large as `simulated`, with a pitch twice as coarse
+  HeightField seen;    ///< the heights that the SEM image shows, at its pixels
   Affine truth;        ///< SEM to AFM
   double overlap = 0;  ///< share of the smaller image
 };
@@ -73,10 +75,11 @@ class SceneMaker {
       scene.overlap = overlap_of(scene.truth, width, height, pitch, afm_nm);
       if (scene.overlap >= least_overlap) break;
     }
-    scene.sem =
-        sem_image(pattern == Pattern::unrelated ? surface_of(pattern, across, pitch) : surface,
-                  scene.truth, width, height, pitch);
-    scene.simulated = afm_image(surface, afm_nm, pitch);
+    const HeightField seen =
+        pattern == Pattern::unrelated ? surface_of(pattern, across, pitch) : surface;
+    scene.sem = sem_image(seen, scene.truth, width, height, pitch);
+    scene.seen = at_pixels(seen, scene.truth, scene.sem);
+    add_afm(surface, afm_nm, pitch, scene);
     return scene;
   }
 
@@ -226,7 +229,20 @@ class SceneMaker {
     return image;
   }
 
-  PlacedImage afm_image(const HeightField& surface, double afm_nm, double pitch) {
+  static HeightField at_pixels(const HeightField& surface, const Affine& map,
+                               const PlacedImage& image) {
+    HeightField out{image.placement(), Grid<double>(image.values.width(), image.values.height())};
+    for (int y = 0; y < image.values.height(); ++y)
+      for (int x = 0; x < image.values.width(); ++x) {
+        const Point2 q = map(image.place_nm(x, y));
+        out.z_nm(x, y) = between(surface.z_nm, (q.x - surface.origin_x_nm) / surface.pitch_x_nm,
+                                 (q.y - surface.origin_y_nm) / surface.pitch_y_nm);
+      }
+    return out;
+  }
+
+  /// The scan, and the image that is simulated from it.
+  void add_afm(const HeightField& surface, double afm_nm, double pitch, RegistrationScene& scene) {
     const int factor = 2;
     const double coarse = factor * pitch;
     // A margin, so that the tip sees what it would.
@@ -246,12 +262,14 @@ class SceneMaker {
         resampled(erode(scan, conical_tip(15, 0.3, {coarse, coarse, 21, 21})), pitch);
     const Grid<double> simulated = model_->predict(eroded)[0];
     const int cut = margin * factor, size = eroded.z_nm.width() - 2 * cut;
-    PlacedImage image{
+    scene.simulated = {
         {pitch, pitch, eroded.origin_x_nm + cut * pitch, eroded.origin_y_nm + cut * pitch},
         Grid<double>(size, size)};
     for (int y = 0; y < size; ++y)
-      for (int x = 0; x < size; ++x) image.values(x, y) = simulated(x + cut, y + cut);
-    return image;
+      for (int x = 0; x < size; ++x) scene.simulated.values(x, y) = simulated(x + cut, y + cut);
+    scene.scan = {{coarse, coarse, scan.x_nm(margin), scan.y_nm(margin)}, Grid<double>(n, n)};
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x) scene.scan.z_nm(x, y) = scan.z_nm(x + margin, y + margin);
   }
 
   std::shared_ptr<const ImageModel> model_;

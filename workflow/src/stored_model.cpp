@@ -18,6 +18,7 @@
 #include "surf/sem/chosen_channels.h"
 #include "surf/workflow/signal_detectors.h"
 #include "surf/workflow/version.h"
+#include "training_time.h"
 
 namespace surf::workflow {
 namespace {
@@ -103,6 +104,12 @@ std::vector<std::string> wanted_channels(const std::vector<std::string>& all,
                      "Leave out `reconstruction.model`, so that one is trained, or train one with "
                      "`simulation.detectors`");
   return {name};
+}
+
+std::string in_minutes(double seconds) {
+  constexpr double few = 90;
+  if (seconds < few) return fmt::format("{:.0f} s", std::max(seconds, 1.0));
+  return fmt::format("{:.0f} minutes", std::ceil(seconds / 60));
 }
 
 StoredModel load(const fs::path& file, const ModelRequest& r) {
@@ -196,12 +203,15 @@ StoredModel find_model(const ModelRequest& r, const Reporter& reporter) {
       note(fmt::format("{}; the model is trained again", error.what()));
     }
   }
+  note(fmt::format(
+      "no model of {} at {:g} eV with pixels of {} is kept: one is trained, and stays in {}",
+      r.material.name, energy_of(r), format_length(r.pixel_nm), file.string()));
+  const TrainJob job = training(r, file);
   note(
-      fmt::format("no model of {} at {} with pixels of {} is kept: one is trained, which takes "
-                  "minutes. It stays in {}",
-                  r.material.name, fmt::format("{:g} eV", energy_of(r)), format_length(r.pixel_nm),
-                  file.string()));
-  if (!run(training(r, file), reporter).complete) throw Interrupted();
+      fmt::format("the training takes about {}; stop it when you like: the same command goes on "
+                  "from there",
+                  in_minutes(expected_training_s(job, reporter))));
+  if (!run(job, reporter).complete) throw Interrupted();
   fs::path images = file;
   // The images are no longer needed.
   fs::remove_all(images.replace_extension(".training"), ignored);

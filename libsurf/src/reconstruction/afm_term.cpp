@@ -2,6 +2,7 @@
 #include "afm_term.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -39,6 +40,8 @@ HWY_EXPORT(raise);
 
 constexpr float deepest = -std::numeric_limits<float>::infinity();
 
+constexpr std::size_t chunks = 16;  // whatever the threads, so that sums are the same
+
 int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
 }  // namespace
@@ -73,6 +76,13 @@ AfmTerm::AfmTerm(const AfmData& data, const HeightField& outside, const SurfaceF
   if (used_pixels_ == 0) return;
   middle_ = {0.5 * (left + right), 0.5 * (low + high)};
   reach_nm_ = std::max({right - left, high - low, frame_.pitch_nm}) / 2;
+}
+
+template <class Work>
+void AfmTerm::in_chunks(std::size_t count, const Work& work) const {
+  parallel_for(chunks, threads_, [&](std::size_t chunk, int) {
+    work(chunk, chunk * count / chunks, (chunk + 1) * count / chunks);
+  });
 }
 
 void AfmTerm::set_outside(const HeightField& outside) {
@@ -232,24 +242,43 @@ AfmTerm::State AfmTerm::evaluate(const Grid<double>& z, const Affine& surface_to
 
 void AfmTerm::add_gradient(const State& s, const Grid<double>& z, const Grid<double>& weights,
                            Grid<double>& out, MapChange* map, TipChange* tip) const {
+  struct Sums {
+    MapChange map{};
+    TipChange tip{};
+  };
+  std::array<Sums, chunks> sums{};
+  if (map || tip)
+    in_chunks(s.contacts.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+      Sums sum;
+      for (std::size_t i = begin; i < end; ++i) {
+        const Contact& c = s.contacts[i];
+        const double weight = weights.data()[i];
+        if (tip && c.tip_sample >= 0)
+          for (int k = 0; k < tip_numbers; ++k) sum.tip[k] += weight * s.by_tip[c.tip_sample][k];
+        if (!map || !c.inside || weight == 0) continue;
+        const CubicSample at(c.x, c.y, frame_.width, frame_.height);
+        const double sx = weight * at.slope_x(z), sy = weight * at.slope_y(z);
+        sum.map[0] += sx;
+        sum.map[1] += sx * c.from_middle_x;
+        sum.map[2] += sx * c.from_middle_y;
+        sum.map[3] += sy;
+        sum.map[4] += sy * c.from_middle_x;
+        sum.map[5] += sy * c.from_middle_y;
+        sum.map[6] += sx * drift_share(c.from_middle_y);
+        sum.map[7] += sy * drift_share(c.from_middle_y);
+      }
+      sums[chunk] = sum;
+    });
+  for (const Sums& sum : sums) {
+    for (int k = 0; map && k < map_numbers; ++k) (*map)[k] += sum.map[k];
+    for (int k = 0; tip && k < tip_numbers; ++k) (*tip)[k] += sum.tip[k];
+  }
+  // Contacts of several pixels may lie on one sample.
   for (std::size_t i = 0; i < s.contacts.size(); ++i) {
     const Contact& c = s.contacts[i];
     const double weight = weights.data()[i];
-    if (tip && c.tip_sample >= 0)
-      for (int k = 0; k < tip_numbers; ++k) (*tip)[k] += weight * s.by_tip[c.tip_sample][k];
-    if (!c.inside || weight == 0) continue;
-    const CubicSample at(c.x, c.y, frame_.width, frame_.height);
-    at.scatter(weight, out);
-    if (!map) continue;
-    const double sx = weight * at.slope_x(z), sy = weight * at.slope_y(z);
-    (*map)[0] += sx;
-    (*map)[1] += sx * c.from_middle_x;
-    (*map)[2] += sx * c.from_middle_y;
-    (*map)[3] += sy;
-    (*map)[4] += sy * c.from_middle_x;
-    (*map)[5] += sy * c.from_middle_y;
-    (*map)[6] += sx * drift_share(c.from_middle_y);
-    (*map)[7] += sy * drift_share(c.from_middle_y);
+    if (c.inside && weight != 0)
+      CubicSample(c.x, c.y, frame_.width, frame_.height).scatter(weight, out);
   }
 }
 
@@ -257,22 +286,24 @@ Grid<double> AfmTerm::change(const State& s, const Grid<double>& z, const Grid<d
                              const MapChange& map, const TipChange& tip) const {
   Grid<double> out(image_.z_nm.width(), image_.z_nm.height());
   const bool moves = std::any_of(map.begin(), map.end(), [](double m) { return m != 0; });
-  for (std::size_t i = 0; i < s.contacts.size(); ++i) {
-    const Contact& c = s.contacts[i];
-    double v = 0;
-    if (c.tip_sample >= 0)
-      for (int k = 0; k < tip_numbers; ++k) v += tip[k] * s.by_tip[c.tip_sample][k];
-    out.data()[i] = v;
-    if (!c.inside) continue;
-    const CubicSample at(c.x, c.y, frame_.width, frame_.height);
-    v += at.value(dz);
-    if (moves)
-      v += at.slope_x(z) * (map[0] + map[1] * c.from_middle_x + map[2] * c.from_middle_y +
-                            map[6] * drift_share(c.from_middle_y)) +
-           at.slope_y(z) * (map[3] + map[4] * c.from_middle_x + map[5] * c.from_middle_y +
-                            map[7] * drift_share(c.from_middle_y));
-    out.data()[i] = v;
-  }
+  in_chunks(s.contacts.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Contact& c = s.contacts[i];
+      double v = 0;
+      if (c.tip_sample >= 0)
+        for (int k = 0; k < tip_numbers; ++k) v += tip[k] * s.by_tip[c.tip_sample][k];
+      if (c.inside) {
+        const CubicSample at(c.x, c.y, frame_.width, frame_.height);
+        v += at.value(dz);
+        if (moves)
+          v += at.slope_x(z) * (map[0] + map[1] * c.from_middle_x + map[2] * c.from_middle_y +
+                                map[6] * drift_share(c.from_middle_y)) +
+               at.slope_y(z) * (map[3] + map[4] * c.from_middle_x + map[5] * c.from_middle_y +
+                                map[7] * drift_share(c.from_middle_y));
+      }
+      out.data()[i] = v;
+    }
+  });
   return out;
 }
 

@@ -13,8 +13,10 @@ namespace {
 // Surfaces are no better known than this; what deviates less from a plane is a plane.
 constexpr double plane_nm = 1e-6;
 
-// Pixels that share a patch: their surfaces are no farther apart and no more turned than this.
-constexpr double shared_nm = 12, shared_cosine = 0.9;
+// Pixels that share a patch: their surfaces are no farther apart and no more turned than this. A
+// patch of its own costs a pixel of 10 nm more than its electrons do, so that wide pixels share as
+// well, two by two.
+constexpr double least_shared_nm = 12, most_shared_nm = 24, shared_px = 2.4, shared_cosine = 0.9;
 constexpr int most_shared = 8;  // pixels along a block
 constexpr std::size_t most_patches = 512;
 
@@ -41,7 +43,8 @@ SiteReplay::SiteReplay(const Scene::Impl& scene, const SimulationOptions& option
       replay_(geometry_, scene.medium_pointers, pointers(libraries), scene.physics.barrier,
               any_origin(options.detectors), direct_, detection_, balance_) {
   const double pixel_nm = std::max({scene.scan.pixel_x_nm, scene.scan.pixel_y_nm, 1e-6});
-  block_ = std::clamp(static_cast<int>(shared_nm / pixel_nm), 1, most_shared);
+  shared_nm_ = std::clamp(shared_px * pixel_nm, least_shared_nm, most_shared_nm);
+  block_ = std::clamp(static_cast<int>(shared_nm_ / pixel_nm), 1, most_shared);
   replay_.use_common_random_numbers(accuracy_of(options.budget) > 0 && options.planar_control);
 }
 
@@ -91,7 +94,7 @@ std::shared_ptr<const LocalSurface> SiteReplay::patch(int x, int y, const Replay
   }
   const BlockSurface& block = at->second;
   const bool near = block.patch && dot(block.normal, site.flat.normal) > shared_cosine &&
-                    length(block.patch->frame().origin - site.surface.position) < shared_nm;
+                    length(block.patch->frame().origin - site.surface.position) < shared_nm_;
   return near ? block.patch : own(site);
 }
 

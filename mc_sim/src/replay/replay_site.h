@@ -89,7 +89,8 @@ class SiteReplay {
     Vec3 normal;
     std::shared_ptr<const LocalSurface> patch;  // null where the beam meets nothing
   };
-  int block_;  // of pixels to a side that may share a patch
+  int block_;         // of pixels to a side that may share a patch
+  double shared_nm_;  // apart at most
   std::map<std::pair<int, int>, BlockSurface> patches_;
 };
 

@@ -31,7 +31,8 @@ struct ModelRequest {
   LearnOptions learn;           ///< options of a training
   std::optional<int> surfaces;  ///< as in TrainJob, like the next two
   int surface_px = TrainJob{}.surface_px;
-  std::int64_t electrons = mc::electrons_of(training_simulation().budget);
+  /// Per pixel of the training's images. Fewer than `train` takes: somebody waits.
+  std::int64_t electrons = 60;
   int threads = 0;
 };
 /// The parameters reconstruction.model, reconstruction.signal, beam.energy, beam.spot and
@@ -58,10 +59,10 @@ std::string kept_name(const ModelRequest& request);
 /// for a record that says nonsense.
 std::vector<mc::Detector> taught_by(const TrainedModel& model);
 
-/// Reads the given model or the stored one. Otherwise trains a model, which takes minutes, and
-/// stores it. A training that was interrupted or killed is continued. A stored file that cannot be
-/// read is trained anew. Throws UsageError if the file is for another material, energy or spot, or
-/// without the signal, InvalidInput for another pixel size, FileError, Interrupted.
+/// Reads the given model or the stored one. Otherwise trains a model, after a note of how long that
+/// takes, and stores it. A training that was interrupted or killed is continued. A stored file that
+/// cannot be read is trained anew. Throws UsageError if the file is for another material, energy or
+/// spot, or without the signal, InvalidInput for another pixel size, FileError, Interrupted.
 StoredModel find_model(const ModelRequest& request, const Reporter& reporter = {});
 
 }  // namespace surf::workflow
