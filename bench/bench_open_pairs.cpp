@@ -10,9 +10,9 @@
 // median difference, because a scan does not know where 0 is.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -26,8 +26,6 @@ namespace {
 
 using namespace surf;
 
-constexpr Pattern open[] = {Pattern::grating, Pattern::dots, Pattern::single_line,
-                            Pattern::unrelated};
 constexpr double fair = 0.9;
 
 struct Row {
@@ -45,15 +43,12 @@ struct Row {
 
 std::vector<Row> read_rows(const std::string& path) {
   std::vector<Row> rows;
-  std::ifstream file(path);
-  for (std::string line; std::getline(file, line);) {
-    std::replace(line.begin(), line.end(), ',', ' ');
-    std::istringstream in(line);
+  for_each_row(path, [&](std::istream& in) {
     Row r;
     if (in >> r.number >> r.pattern >> r.verdict >> r.registration >> r.rms_nm >> r.stated_nm >>
         r.within_1 >> r.within_2 >> r.rival >> r.seconds)
       rows.push_back(r);
-  }
+  });
   return rows;
 }
 
@@ -65,10 +60,7 @@ double rms(const Grid<double>& values) {
 
 Row measure(const std::string& file, const std::shared_ptr<const ImageModel>& model, int number,
             Pattern pattern) {
-  SceneMaker maker(model, 1000003 + 100000 * static_cast<std::uint64_t>(pattern) +
-                              static_cast<std::uint64_t>(number));
-  const RegistrationScene scene =
-      number % 2 == 0 ? maker.make(pattern, 456, 172, 0.5) : maker.make(pattern, 300, 300, 0.5);
+  const RegistrationScene scene = numbered_scene(model, number, pattern);
   workflow::ReconstructJob job;
   job.afm.emplace();
   job.afm->scan = scene.scan;
@@ -112,7 +104,7 @@ void sum_up(const std::vector<Row>& rows) {
       "within "
       "two: least, median | fewer than {:.0f} % within two: flagged, sound |\n",
       100 * fair);
-  for (const Pattern p : open) {
+  for (const Pattern p : without_place) {
     int pairs = 0, refused = 0, sound = 0, rivals = 0, tight_flagged = 0, tight_sound = 0;
     std::vector<double> off, stated, within;
     for (const Row& r : rows) {
@@ -144,7 +136,7 @@ int main(int argc, char** argv) {
   std::vector<Row> rows = read_rows(argv[2]);
   for (int number = std::atoi(argv[3]); number < std::atoi(argv[4]); ++number) {
     if (number % 9 != 0) continue;
-    for (const Pattern pattern : open) {
+    for (const Pattern pattern : without_place) {
       if (std::ranges::any_of(rows, [&](const Row& r) {
             return r.number == number && r.pattern == static_cast<int>(pattern);
           }))

@@ -19,7 +19,6 @@
 #include <ctime>
 #include <fstream>
 #include <map>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -69,8 +68,6 @@ double upper_limit(int k, int n) {
 
 constexpr Pattern knowable[] = {Pattern::blocks, Pattern::bumps, Pattern::pits, Pattern::rough,
                                 Pattern::lines_with_ends};
-constexpr Pattern open[] = {Pattern::grating, Pattern::dots, Pattern::single_line,
-                            Pattern::unrelated};
 constexpr const char* verdicts[] = {"verified", "ambiguous", "unconverged", "unrelated"};
 
 constexpr double aim_px = 0.3;
@@ -86,23 +83,17 @@ struct Row {
 
 std::vector<Row> read_rows(const std::string& path) {
   std::vector<Row> rows;
-  std::ifstream file(path);
-  for (std::string line; std::getline(file, line);) {
-    std::replace(line.begin(), line.end(), ',', ' ');
-    std::istringstream in(line);
+  for_each_row(path, [&](std::istream& in) {
     Row r;
     if (in >> r.number >> r.pattern >> r.verdict >> r.rivals >> r.overlap >> r.error_px >>
         r.corner_px >> r.stderr_px >> r.blur_px >> r.score >> r.seconds)
       rows.push_back(r);
-  }
+  });
   return rows;
 }
 
 Row measure(const std::shared_ptr<const ImageModel>& model, int number, Pattern pattern) {
-  SceneMaker maker(model, 1000003 + 100000 * static_cast<std::uint64_t>(pattern) +
-                              static_cast<std::uint64_t>(number));
-  const RegistrationScene scene =
-      number % 2 == 0 ? maker.make(pattern, 456, 172, 0.5) : maker.make(pattern, 300, 300, 0.5);
+  const RegistrationScene scene = numbered_scene(model, number, pattern);
   const std::clock_t start = std::clock();
   const Registration r = register_images(scene.sem, scene.simulated);
   const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
@@ -179,7 +170,8 @@ void sum_up(const std::vector<Row>& rows) {
   };
   const auto is = [](const Row& r, Pattern p) { return r.pattern == static_cast<int>(p); };
   const auto is_open = [&](const Row& r) {
-    return std::any_of(std::begin(open), std::end(open), [&](Pattern p) { return is(r, p); });
+    return std::any_of(std::begin(without_place), std::end(without_place),
+                       [&](Pattern p) { return is(r, p); });
   };
   fmt::print(
       "| scene | pairs | verified | ambiguous | unconverged | unrelated | with rivals | verified "
@@ -188,8 +180,9 @@ void sum_up(const std::vector<Row>& rows) {
       "1, 2 standard "
       "errors; mean z^2 | seconds: median, largest |\n",
       aim_px);
-  for (const auto& patterns : {std::vector<Pattern>(std::begin(knowable), std::end(knowable)),
-                               std::vector<Pattern>(std::begin(open), std::end(open))})
+  for (const auto& patterns :
+       {std::vector<Pattern>(std::begin(knowable), std::end(knowable)),
+        std::vector<Pattern>(std::begin(without_place), std::end(without_place))})
     for (const Pattern p : patterns)
       print(surf::name_of(p), of([&](const Row& r) { return is(r, p); }));
   const std::vector<Row> with = of([&](const Row&r) { return !is_open(r); }), without = of(is_open);
@@ -231,7 +224,7 @@ int main(int argc, char** argv) {
   for (int number = std::atoi(argv[3]); number < std::atoi(argv[4]); ++number) {
     add(number, knowable[number % std::size(knowable)]);
     if (number % 9 == 0)
-      for (const Pattern pattern : open) add(number, pattern);
+      for (const Pattern pattern : without_place) add(number, pattern);
   }
   sum_up(rows);
 }

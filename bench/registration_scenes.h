@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <fstream>
 #include <memory>
 #include <numbers>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -49,6 +51,10 @@ inline const char* name_of(Pattern p) {
                                    "grating", "dots",  "single line", "unrelated"};
   return names[static_cast<int>(p)];
 }
+
+/// Patterns whose place cannot be known.
+inline constexpr Pattern without_place[] = {Pattern::grating, Pattern::dots, Pattern::single_line,
+                                            Pattern::unrelated};
 
 class SceneMaker {
  public:
@@ -275,5 +281,25 @@ class SceneMaker {
   std::shared_ptr<const ImageModel> model_;
   RandomStream random_;
 };
+
+/// The pair of this number and pattern: 456 x 172 and 300 x 300 SEM pixels in turn.
+inline RegistrationScene numbered_scene(const std::shared_ptr<const ImageModel>& model, int number,
+                                        Pattern pattern) {
+  SceneMaker maker(model, 1000003 + 100000 * static_cast<std::uint64_t>(pattern) +
+                              static_cast<std::uint64_t>(number));
+  return number % 2 == 0 ? maker.make(pattern, 456, 172, 0.5) : maker.make(pattern, 300, 300, 0.5);
+}
+
+/// Calls read(line) for each line of a table of numbers, whose commas are blanks then. There is
+/// none of a file that is missing.
+template <class Read>
+void for_each_row(const std::string& path, const Read& read) {
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream in(line);
+    read(in);
+  }
+}
 
 }  // namespace surf

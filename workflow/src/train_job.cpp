@@ -22,12 +22,6 @@
 namespace surf::workflow {
 namespace {
 
-/// The number of generated surfaces.
-int own_surfaces(const TrainJob& job, const Learner& learner) {
-  if (!job.inputs.empty()) return 0;
-  return job.surfaces.value_or(learner.needs_images ? usual_training_surfaces : 0);
-}
-
 void check_numbers(const TrainJob& job, int own) {
   if (!(job.pixel_nm > 0 && std::isfinite(job.pixel_nm)))
     throw UsageError("`training.pixel_size`", "it must be above zero",
@@ -179,7 +173,7 @@ TrainSummary run(const TrainJob& job, const Reporter& reporter, Team* team) {
   std::vector<TrainingSurface> surfaces;
   together(team, [&] {
     learner = &learner_of(job);
-    const int own = own_surfaces(job, *learner);
+    const int own = own_surfaces(job, learner->needs_images);
     check_numbers(job, own);
     surfaces = gather_surfaces(job, own, reporter.on_note);
     if (leads(team)) check_target(job, surfaces, team != nullptr);

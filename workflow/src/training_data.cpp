@@ -91,6 +91,11 @@ Grid<float> even_errors(const Grid<float>& errors, const Mask& used) {
 
 }  // namespace
 
+int own_surfaces(const TrainJob& job, bool needs_images) {
+  if (!job.inputs.empty()) return 0;
+  return job.surfaces.value_or(needs_images ? usual_training_surfaces : 0);
+}
+
 std::vector<TrainingSurface> gather_surfaces(const TrainJob& job, int own,
                                              const NoteCallback& note) {
   std::vector<TrainingSurface> surfaces;

@@ -24,6 +24,9 @@ struct TrainingSurface {
   bool has_image() const { return !image.empty() || pixels; }
 };
 
+/// The number of generated surfaces.
+int own_surfaces(const TrainJob& job, bool needs_images);
+
 /// The job's own surfaces, or `own` generated ones if it has none. They are resampled if necessary
 /// and have unique names.
 std::vector<TrainingSurface> gather_surfaces(const TrainJob& job, int own,

@@ -67,8 +67,8 @@ double learning_s(const TrainJob& job, const Learner& learner,
 
 double expected_training_s(const TrainJob& job, const Reporter& reporter) {
   const Learner& learner = learner_of(job);
-  const int own = job.surfaces.value_or(learner.needs_images ? usual_training_surfaces : 0);
-  std::vector<TrainingSurface> surfaces = gather_surfaces(job, own, {});
+  std::vector<TrainingSurface> surfaces =
+      gather_surfaces(job, own_surfaces(job, learner.needs_images), {});
   const std::size_t all = surfaces.size(), there = images_in(image_folder(job));
   if (all == 0) return 0;
   surfaces.resize(std::min(all, there + timed_images));

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/cubic_sample.h"
+#include "reconstruction/in_chunks.h"
 #include "surf/afm/resample.h"
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
@@ -39,8 +40,6 @@ namespace {
 HWY_EXPORT(raise);
 
 constexpr float deepest = -std::numeric_limits<float>::infinity();
-
-constexpr std::size_t chunks = 16;  // whatever the threads, so that sums are the same
 
 int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
@@ -76,13 +75,6 @@ AfmTerm::AfmTerm(const AfmData& data, const HeightField& outside, const SurfaceF
   if (used_pixels_ == 0) return;
   middle_ = {0.5 * (left + right), 0.5 * (low + high)};
   reach_nm_ = std::max({right - left, high - low, frame_.pitch_nm}) / 2;
-}
-
-template <class Work>
-void AfmTerm::in_chunks(std::size_t count, const Work& work) const {
-  parallel_for(chunks, threads_, [&](std::size_t chunk, int) {
-    work(chunk, chunk * count / chunks, (chunk + 1) * count / chunks);
-  });
 }
 
 void AfmTerm::set_outside(const HeightField& outside) {
@@ -248,27 +240,29 @@ void AfmTerm::add_gradient(const State& s, const Grid<double>& z, const Grid<dou
   };
   std::array<Sums, chunks> sums{};
   if (map || tip)
-    in_chunks(s.contacts.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-      Sums sum;
-      for (std::size_t i = begin; i < end; ++i) {
-        const Contact& c = s.contacts[i];
-        const double weight = weights.data()[i];
-        if (tip && c.tip_sample >= 0)
-          for (int k = 0; k < tip_numbers; ++k) sum.tip[k] += weight * s.by_tip[c.tip_sample][k];
-        if (!map || !c.inside || weight == 0) continue;
-        const CubicSample at(c.x, c.y, frame_.width, frame_.height);
-        const double sx = weight * at.slope_x(z), sy = weight * at.slope_y(z);
-        sum.map[0] += sx;
-        sum.map[1] += sx * c.from_middle_x;
-        sum.map[2] += sx * c.from_middle_y;
-        sum.map[3] += sy;
-        sum.map[4] += sy * c.from_middle_x;
-        sum.map[5] += sy * c.from_middle_y;
-        sum.map[6] += sx * drift_share(c.from_middle_y);
-        sum.map[7] += sy * drift_share(c.from_middle_y);
-      }
-      sums[chunk] = sum;
-    });
+    in_chunks(s.contacts.size(), threads_,
+              [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+                Sums sum;
+                for (std::size_t i = begin; i < end; ++i) {
+                  const Contact& c = s.contacts[i];
+                  const double weight = weights.data()[i];
+                  if (tip && c.tip_sample >= 0)
+                    for (int k = 0; k < tip_numbers; ++k)
+                      sum.tip[k] += weight * s.by_tip[c.tip_sample][k];
+                  if (!map || !c.inside || weight == 0) continue;
+                  const CubicSample at(c.x, c.y, frame_.width, frame_.height);
+                  const double sx = weight * at.slope_x(z), sy = weight * at.slope_y(z);
+                  sum.map[0] += sx;
+                  sum.map[1] += sx * c.from_middle_x;
+                  sum.map[2] += sx * c.from_middle_y;
+                  sum.map[3] += sy;
+                  sum.map[4] += sy * c.from_middle_x;
+                  sum.map[5] += sy * c.from_middle_y;
+                  sum.map[6] += sx * drift_share(c.from_middle_y);
+                  sum.map[7] += sy * drift_share(c.from_middle_y);
+                }
+                sums[chunk] = sum;
+              });
   for (const Sums& sum : sums) {
     for (int k = 0; map && k < map_numbers; ++k) (*map)[k] += sum.map[k];
     for (int k = 0; tip && k < tip_numbers; ++k) (*tip)[k] += sum.tip[k];
@@ -286,7 +280,7 @@ Grid<double> AfmTerm::change(const State& s, const Grid<double>& z, const Grid<d
                              const MapChange& map, const TipChange& tip) const {
   Grid<double> out(image_.z_nm.width(), image_.z_nm.height());
   const bool moves = std::any_of(map.begin(), map.end(), [](double m) { return m != 0; });
-  in_chunks(s.contacts.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+  in_chunks(s.contacts.size(), threads_, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Contact& c = s.contacts[i];
       double v = 0;

@@ -70,9 +70,6 @@ class AfmTerm {
 
  private:
   Affine to_samples(const Affine& surface_to_afm) const;
-  /// Calls work(chunk, begin, end), each a part of `count`, in parallel.
-  template <class Work>
-  void in_chunks(std::size_t count, const Work& work) const;
 
   HeightField image_;
   AfmNoise noise_;

@@ -11,6 +11,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "afm/normal_numbers.h"
+#include "reconstruction/in_chunks.h"
 #include "surf/core/parallel.h"
 
 namespace surf::reconstruction {
@@ -312,13 +313,11 @@ void Preconditioner::Blocks::solve(const Step& r, Step& out, int threads) const 
   }
   if (!has_tip) return;
   Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(r.tip.data(), tip_numbers);
-  constexpr std::size_t chunks = 16;  // whatever the threads, so that sums are the same
   const std::size_t samples = out.z_nm.size();
-  const auto end_of = [&](std::size_t chunk) { return (chunk + 1) * samples / chunks; };
   std::array<TipChange, chunks> sums{};
-  parallel_for(chunks, threads, [&](std::size_t chunk, int) {
+  in_chunks(samples, threads, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     TipChange sum{};
-    for (std::size_t i = chunk * samples / chunks; i < end_of(chunk); ++i) {
+    for (std::size_t i = begin; i < end; ++i) {
       const double value = r.z_nm.data()[i];
       const float* const follow = &follows[i * tip_numbers];
       for (int k = 0; k < tip_numbers; ++k) sum[k] += value * double{follow[k]};
@@ -330,8 +329,8 @@ void Preconditioner::Blocks::solve(const Step& r, Step& out, int threads) const 
   const Eigen::VectorXd solved = tip.solve(right);
   std::copy_n(solved.data(), tip_numbers, out.tip.begin());
   const TipChange change = out.tip;
-  parallel_for(chunks, threads, [&](std::size_t chunk, int) {
-    for (std::size_t i = chunk * samples / chunks; i < end_of(chunk); ++i) {
+  in_chunks(samples, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
       const float* const follow = &follows[i * tip_numbers];
       double sum = 0;
       for (int k = 0; k < tip_numbers; ++k) sum += change[k] * double{follow[k]};

@@ -48,8 +48,8 @@ void expect_same(const Setup& setup, int primaries, int libraries = 4) {
   for (int i = 0; i < libraries; ++i) {
     options.seed = 100 + static_cast<std::uint64_t>(i);
     const Libraries drawn = test::make_libraries(scene, options.seed, 1);
-    // Flat surroundings are looked for from 50 primaries on: with and without.
-    const int size = i % 2 == 0 ? 50 : 40;
+    // Surroundings are looked for from 8 primaries on: with and without.
+    const int size = i % 2 == 0 ? 50 : 5;
     const auto replayer = make_replay_worker(scene.impl(), options, drawn);
     test::add_blocks(replay, *replayer, setup.scan, primaries / libraries / size, size);
   }
@@ -119,6 +119,10 @@ TEST(ReplaySameness, WithoutSecondaries) {
 TEST(ReplaySameness, OnAMesa) {
   // Its top, its edge, its foot, and beside.
   expect_same({mesa(), beam_of(1000), row_of_pixels(0, 14, 4)}, 4000);
+}
+
+TEST(ReplaySameness, OnAMesaWhoseWidePixelsShareASurface) {
+  expect_same({mesa(), beam_of(1000), row_of_pixels(15, 10, 4)}, 4000);
 }
 
 TEST(ReplaySameness, InATrench) {
