@@ -46,7 +46,7 @@ def sheet(pictures, file):
     out = Image.new("RGB", (2 * WIDTH, rows * high), "white")
     for i, image in enumerate(images):
         out.paste(image, (i % 2 * WIDTH, i // 2 * high))
-    out.quantize(64, dither=Image.Dither.NONE).save(file, optimize=True)
+    out.quantize(128, dither=Image.Dither.NONE).save(file, optimize=True)
 
 
 def main():
