@@ -87,6 +87,16 @@ Row measure(const std::string& file, const std::shared_ptr<const ImageModel>& mo
       "{} {}: {}, off {:.1f} nm, stated {:.1f} nm, within one {:.0f} %, two {:.0f} %, {:.0f} s\n",
       number, surf::name_of(pattern), workflow::name(s.verdict), row.rms_nm, row.stated_nm,
       100 * row.within_1, 100 * row.within_2, row.seconds);
+  if (s.pose && s.pose->registration) {
+    const Registration& r = *s.pose->registration;
+    fmt::print("    registration {}, slides: {}, rivals (px):", workflow::name(r.verdict),
+               r.slides);
+    for (const RegistrationRival& rival : r.rivals) fmt::print(" {:.3g}", rival.distance_px);
+    fmt::print("; judged:");
+    for (const workflow::JudgedPlace& place : s.pose->places)
+      fmt::print(" {:.3g}", place.probability);
+    fmt::print("\n");
+  }
   for (const std::string& reason : s.reasons) fmt::print("    {}\n", reason);
   std::fflush(stdout);
   return row;

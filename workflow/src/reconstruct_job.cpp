@@ -15,6 +15,7 @@
 #include "first_calibration.h"
 #include "job_identity.h"
 #include "judge_places.h"
+#include "place_doubt.h"
 #include "reconstruction_checkpoint.h"
 #include "reconstruction_output.h"
 #include "reconstruction_report.h"
@@ -155,14 +156,6 @@ bool like_noise(const ResidualReport& r) {
          std::max(std::abs(r.along), std::abs(r.across)) <= largest_correlation;
 }
 
-/// What the SEM image may be displaced by where its place is not certain.
-double place_doubt_px(const ReconstructSummary& s) {
-  constexpr double most = 100;
-  if (!s.pose || s.pose->verified()) return 0;
-  const double stderr_px = s.pose->registration->stderr_px;
-  return std::isfinite(stderr_px) ? std::min(stderr_px, most) : most;
-}
-
 /// Reasons against trusting the result.
 std::vector<std::string> reasons_of(const ReconstructSummary& s, double tilt_error_deg) {
   std::vector<std::string> reasons;
@@ -222,10 +215,10 @@ std::vector<std::string> reasons_of(const ReconstructSummary& s, double tilt_err
   }
   if (s.pose && !s.pose->verified())
     reasons.push_back(fmt::format(
-        "the registration is {} ({}): walls may be displaced by {:.2g} pixels, which the "
-        "deviations "
-        "contain",
-        name(s.pose->registration->verdict), s.pose->registration->reason, place_doubt_px(s)));
+        "the registration is {} ({}): the SEM image may be displaced by {:.2g} pixels, which the "
+        "deviations contain",
+        name(s.pose->registration->verdict), s.pose->registration->reason,
+        largest_px(s.place_doubt)));
   return reasons;
 }
 
@@ -340,7 +333,7 @@ class Warnings {
 
 ReconstructionOptions options_of(const ReconstructJob& job, const ReconstructSummary& s) {
   ReconstructionOptions o = job.options;
-  o.place_doubt_px = place_doubt_px(s);
+  o.place_doubt = s.place_doubt;
   o.rough_ground = s.afm && s.afm->rough_ground;
   // It would follow the direction in which the channels, or a film, cannot be told apart.
   if (s.gains_tied || !job.film.empty()) o.refine_calibration = false;
@@ -397,6 +390,7 @@ ReconstructSummary run(const ReconstructJob& job, const Reporter& reporter) {
   if (job.afm)
     afm = AfmData{s.afm->image, s.afm->tip, s.afm->noise, job.upsample, s.afm->level_doubt};
   if (afm && job.sem) judge_places(job, s, image, *afm, told);
+  if (s.pose && job.sem) s.place_doubt = place_doubt(*s.pose, job.sem->image);
   if (job.sem) sem = prepare_sem(job, s, image, afm ? &*afm : nullptr, told);
   if (sem && !job.film.empty()) sem->film = film_of(job, s, told);
   std::vector<SemView> views;

@@ -188,6 +188,7 @@ Json pose_json(const ReconstructJob& job, const ReconstructSummary& s) {
   json["reason"] = r.reason;
   json["score"] = number(r.score);
   json["stderr_px"] = number(r.stderr_px);
+  json["slides"] = r.slides;
   json["overlap"] = number(r.overlap);
   json["rivals"] = Json::array();
   for (const RegistrationRival& rival : r.rivals) {

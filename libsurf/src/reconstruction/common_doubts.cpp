@@ -14,11 +14,16 @@ namespace {
 /// alone would leave plateaus as they are, however far the place may be off.
 Grid<double> squares_of_place(const CommonDoubts& doubts, const Grid<double>& soft) {
   constexpr int draws = 32;
+  const double root_x = std::sqrt(doubts.place.along_x), root_y = std::sqrt(doubts.place.along_y);
+  const double common =
+      root_x > 0 && root_y > 0 ? std::clamp(doubts.place.both / (root_x * root_y), -1.0, 1.0) : 0;
   NormalNumbers normal(doubts.seed, 5);
   const int w = soft.width(), h = soft.height();
   Grid<double> squares(w, h);
   for (int d = 0; d < draws; ++d) {
-    const double by_x = doubts.place_px * normal(), by_y = doubts.place_px * normal();
+    const double first = normal(), second = normal();
+    const double by_x = root_x * first;
+    const double by_y = root_y * (common * first + std::sqrt(1 - common * common) * second);
     for (int y = 0; y < h; ++y)
       for (int x = 0; x < w; ++x) {
         const CubicSample there(std::clamp(x + by_x, 0.0, w - 1.0),
@@ -46,7 +51,7 @@ void add(const CommonDoubts& doubts, const HeightField& surface, const Grid<doub
                    std::pow(soft(x, y + 1) - soft(x, y - 1), 2));
       deviation_nm(x, y) = std::sqrt(square);
     }
-  if (!(doubts.place_px > 0)) return;
+  if (!(doubts.place.along_x > 0) && !(doubts.place.along_y > 0)) return;
   const Grid<double> squares = squares_of_place(doubts, soft);
   for (std::size_t i = 0; i < squares.size(); ++i)
     deviation_nm.data()[i] =

@@ -10,7 +10,7 @@ struct CommonDoubts {
   SlopeDoubt level = {};  ///< of the scan's slopes, nm per nm
   Point2 middle = {};     ///< of the scan, in its frame, nm: where a tilt changes nothing
   double edge_px = 0;     ///< what walls may be displaced by
-  double place_px = 0;    ///< what everything may be displaced by, however far
+  PlaceDoubt place = {};  ///< what everything may be displaced by, however far
   std::uint64_t seed = 1;
 };
 

@@ -318,7 +318,7 @@ class Work {
       doubts.level = afm_->level_doubt;
       doubts.middle = {scan.x_nm(scan.z_nm.width() / 2), scan.y_nm(scan.z_nm.height() / 2)};
     }
-    if (sem_) doubts.edge_px = edge_doubt_px, doubts.place_px = options_.place_doubt_px;
+    if (sem_) doubts.edge_px = edge_doubt_px, doubts.place = options_.place_doubt;
     return doubts;
   }
 

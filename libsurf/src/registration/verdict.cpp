@@ -27,6 +27,7 @@ double chance_bound(const std::vector<double>& sorted, double odds) {
 }
 
 void judge(Registration& r, const Evidence& e) {
+  r.slides = e.slid_off || e.loosest_px > sliding_px;
   if (!e.any_place) {
     r.verdict = RegistrationVerdict::unrelated;
     r.reason =

@@ -26,11 +26,16 @@ TEST(CommonDoubts, AnUncertainPlaceReachesPlateausAndNoLevelGround) {
     return deviation;
   };
   CommonDoubts place;
-  place.place_px = 4;
+  place.place = {16, 16, 0};
   const Grid<double> off = added(place);
   EXPECT_NEAR(off(20, 20), 1, 1e-9);  // ten deviations from the step
   EXPECT_GT(off(57, 20), 15);         // within one
   EXPECT_GT(off(63, 20), 15);
+  CommonDoubts along;
+  along.place = {0, 16, 0};  // along the step nothing changes
+  EXPECT_NEAR(added(along)(57, 20), 1, 1e-9);
+  along.place = {16, 16, 16};  // as across it
+  EXPECT_GT(added(along)(57, 20), 15);
   CommonDoubts edge;
   edge.edge_px = 0.15;
   EXPECT_EQ(added(edge)(57, 20), 1);

@@ -406,6 +406,7 @@ TEST(Verdict, SaysWhatIsAmissBeforeItAccepts) {
     r.rivals.resize(rivals);
     judge(r, evidence);
     EXPECT_FALSE(r.reason.empty());
+    EXPECT_EQ(r.slides, evidence.slid_off || evidence.loosest_px > 1);
     return r.verdict;
   };
   EXPECT_EQ(verdict_of(good), verified);

@@ -24,6 +24,12 @@ enum class ReconstructionMethod {
   lbfgs,
 };
 
+/// What the SEM image may be displaced by on the scan because its place is not certain: variances
+/// along x and y of the surface, and their covariance, pixels squared.
+struct PlaceDoubt {
+  double along_x = 0, along_y = 0, both = 0;
+};
+
 struct ReconstructionOptions {
   ReconstructionMethod method = ReconstructionMethod::gauss_newton;
 
@@ -47,9 +53,7 @@ struct ReconstructionOptions {
   /// where a surface made under the usual one bends as much.
   bool rough_ground = false;
 
-  /// What walls may be displaced by, in pixels, because the place of the images is not certain;
-  /// counts in the deviations alone.
-  double place_doubt_px = 0;
+  PlaceDoubt place_doubt = {};  ///< counts in the deviations alone
 
   bool refine_transform = true;  ///< the map is fitted together with the surface
   /// A drift of the scan that is not steady is fitted with the map: a parabola along its slow axis.

@@ -98,6 +98,8 @@ struct Registration {
   /// Standard error of the mapped position, root mean square over the overlap. Includes the effect
   /// of the tip on edges; rather too large than too small.
   double stderr_px = 0;
+  /// Along some motion the images hold too little to tell the place: they slide on each other.
+  bool slides = false;
   double overlap = 0;                     ///< share of the SEM's pixels inside the AFM's image
   std::vector<RegistrationRival> rivals;  ///< best first
   std::vector<RegistrationStep> steps;

@@ -146,6 +146,7 @@ struct ReconstructSummary {
   std::optional<PreparedAfm> afm;
   std::optional<StoredModel> model;
   std::optional<Pose> pose;
+  PlaceDoubt place_doubt;                  ///< none where the pose is verified
   std::optional<Calibration> calibration;  ///< initial calibration; absent: it was given
   bool gains_tied = false;  ///< the channels cannot be told apart: one fixed gain for all
   std::optional<SemNoise> sem_noise;

@@ -67,10 +67,13 @@ struct Pose {
   /// Places that rival each other, judged by both images, likeliest first. Empty: there were none.
   std::vector<JudgedPlace> places;
 
-  /// Both images together say which of the rival places is meant.
-  bool decided() const {
+  /// Both images together prefer one of the places that were judged.
+  bool preferred() const {
     return !places.empty() && places.front().explained && places.front().probability >= 0.95;
   }
+  /// Both images together say which place is meant. Where they slide on each other they do not,
+  /// because there are more places than those that were judged.
+  bool decided() const { return preferred() && !(registration && registration->slides); }
   bool verified() const {
     return !registration || registration->verdict == RegistrationVerdict::verified || decided();
   }

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The files that pages of the manual and examples of help texts take for the reader's own, small, in the current folder. It
+# needs `samples` there and `semsurf` on the path.
+set -eu
+quiet() { "$@" >log.txt 2>&1 || { code=$?; [ $code -eq 4 ] || { echo "$*"; cat log.txt; exit $code; }; }; }
+copies() { file=$1; shift; for copy in "$@"; do cp "$file" "$copy"; done; }
+mkdir -p scans one two
+
+# A scan, an SEM image of the same place, the surface, the tip, and what microscopists point at in both images.
+quiet semsurf sample pads --size 96x72 --electrons 20 -o pads
+copies pads/afm.gsf scan.gwy scan.gsf scan.spm mica.gwy monday.gwy before.gsf large.gsf a.gsf b.gsf known.gsf \
+  scans/monday.spm scans/tuesday.spm
+copies pads/truth.gsf surface.gsf fine.gsf other.gsf eroded.gsf
+cp pads/truth_tip.gsf tip.gsf
+quiet semsurf clean scan.gsf --median 3 -o after.gsf
+cp after.gsf tuesday.gwy
+quiet semsurf level scan.gsf -o flat.gsf
+python3 - <<'IN'
+import json
+m = json.load(open("pads/truth.json"))["sem_to_afm"]
+print("sem_x_nm,sem_y_nm,afm_x_nm,afm_y_nm", file=open("places.csv", "w"))
+for x, y in ((-300, -250), (300, -200), (250, 280), (-350, 200)):
+    print(x, y, m[0] * x + m[1] * y + m[2], m[3] * x + m[4] * y + m[5], sep=",", file=open("places.csv", "a"))
+json.dump({"semsurf": "transform", "version": 1, "sem_to_afm": m, "verified": True}, open("transform.json", "w"))
+IN
+for folder in one two; do
+  quiet semsurf level surface.gsf --level-method none -o $folder/surface.vti
+done
+cp one/surface.vti surface.vti
+
+# Images.
+copies pads/sem.tif sem.tif image.tif later.tif
+quiet semsurf predict surface.gsf --model samples/si-1keV-10nm.json --resample -o simulated.exr -o sem.png
+copies sem.png image.png
+cp simulated.exr sem.exr
+quiet semsurf certainty scan.gsf --tip tip.gsf -o map.tif
+cp map.tif certainty.tif
+quiet oiiotool --create 73x91 1 --fill:color=1 12x9+30+40 -d uint8 -o particles.png
+quiet oiiotool --create 73x91 1 --fill:color=1 73x20+0+0 -d uint8 -o substrate.tif
+quiet semsurf simulate samples/mesa80.toml --electrons 4 --size 16x16 --trajectories 20 -o out.exr
+mv out.tracks.vtp tracks.vtp
+mkdir -p out
+mv out.exr out/cube.exr
+
+# Models and materials.
+copies samples/si-1keV-10nm.json si.json si-1keV-10nm.json
+cp samples/si-1keV-3nm.json .
+cat >mine.toml <<'IN'
+[[material]]
+name = "nitride"
+formula = "Si3N4"
+density_g_cm3 = 3.17
+band_gap_ev = 5.3
+IN
+
+# Meshes.
+copies samples/pyramid.stl cube.stl
+quiet semsurf mesh cube.stl --out-unit um --plain -o grain.ply
+quiet semsurf mesh cube.stl --out-unit um --plain -o part.obj
+quiet semsurf mesh cube.stl -o broken.obj
+sed -i '$d' broken.obj
+quiet semsurf mesh surface.gsf --out-unit um --plain -o part.stl
+quiet semsurf mesh surface.gsf -o specimen.ply
+quiet semsurf mesh surface.gsf -o scan.ply
+rm log.txt out.run.json out.tracks.png
