@@ -58,6 +58,14 @@ double rms(const Grid<double>& values) {
   return values.empty() ? 0 : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
+/// By how many pixels a map is off in the SEM image's middle.
+double off_px(const Affine& map, const RegistrationScene& scene) {
+  const Point2 middle{scene.sem.x_nm(scene.sem.values.width() / 2),
+                      scene.sem.y_nm(scene.sem.values.height() / 2)};
+  const Point2 found = map(middle), there = scene.truth(middle);
+  return std::hypot(found.x - there.x, found.y - there.y) / scene.sem.pitch_x_nm;
+}
+
 Row measure(const std::string& file, const std::shared_ptr<const ImageModel>& model, int number,
             Pattern pattern) {
   const RegistrationScene scene = numbered_scene(model, number, pattern);
@@ -89,8 +97,10 @@ Row measure(const std::string& file, const std::shared_ptr<const ImageModel>& mo
       100 * row.within_1, 100 * row.within_2, row.seconds);
   if (s.pose && s.pose->registration) {
     const Registration& r = *s.pose->registration;
-    fmt::print("    registration {}, slides: {}, rivals (px):", workflow::name(r.verdict),
-               r.slides);
+    fmt::print(
+        "    registration {}, slides: {}, place off by {:.1f} pixels, then {:.1f}; rivals (px):",
+        workflow::name(r.verdict), r.slides, off_px(r.sem_to_afm, scene),
+        off_px(s.result.sem_to_afm, scene));
     for (const RegistrationRival& rival : r.rivals) fmt::print(" {:.3g}", rival.distance_px);
     fmt::print("; judged:");
     for (const workflow::JudgedPlace& place : s.pose->places)

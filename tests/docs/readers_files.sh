@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The files that pages of the manual and examples of help texts take for the reader's own, small, in the current folder. It
-# needs `samples` there and `semsurf` on the path.
+# The files that pages of the manual and examples of help texts take for the reader's own, small, in the current folder:
+# bash readers_files.sh [images]. It needs `samples` there and `semsurf` on the path. With `images` there are also simulated
+# images of lines, trenches and holes, and of quadrants: a minute.
 set -eu
 quiet() { "$@" >log.txt 2>&1 || { code=$?; [ $code -eq 4 ] || { echo "$*"; cat log.txt; exit $code; }; }; }
 copies() { file=$1; shift; for copy in "$@"; do cp "$file" "$copy"; done; }
@@ -63,3 +64,35 @@ quiet semsurf mesh surface.gsf --out-unit um --plain -o part.stl
 quiet semsurf mesh surface.gsf -o specimen.ply
 quiet semsurf mesh surface.gsf -o scan.ply
 rm log.txt out.run.json out.tracks.png
+[ "${1:-}" = images ] || exit 0
+
+# relief NAME SHAPE LINES...: a scene of a height field.
+relief() {
+  name=$1 shape=$2
+  shift 2
+  printf '%s\n' '[beam]' 'energy = "1keV"' 'spot = "2nm"' '[scan]' 'size = "96x64"' 'pixel_size = "4nm"' '[height_field]' \
+    'material = "Si"' "shape = \"$shape\"" 'width = "800nm"' 'pitch = "1nm"' 'edge = "mirror"' "$@" >"$name.toml"
+}
+relief lines grating 'period = "150nm"' 'height = "100nm"' 'top_width = "61nm"' 'wall_run = "9nm"'
+relief trench trench 'trench_depth = "120nm"' 'bottom_width = "60nm"' 'wall_run = "5nm"'
+relief via via 'via_depth = "100nm"' 'bottom_width = "60nm"' 'wall_run = "5nm"'
+quiet semsurf simulate lines.toml --electrons 100 -o up.tif
+cp up.tif lines.tif
+quiet semsurf simulate lines.toml --electrons 100 --seed 2 --tilt 3deg -o tilted.tif
+quiet semsurf simulate trench.toml --electrons 100 --energy 800eV -o trench.tif
+quiet semsurf simulate via.toml --electrons 100 --pixel-size 2nm -o via.png
+quiet semsurf simulate surface.gsf --material Si --pixel-size 10nm --detector quadrants --electrons 50 -o q.exr
+python3 - <<'IN'
+import struct
+width, height = 121, 61   # a line 50 nm wide and 60 nm high; 2 nm between samples
+line = [60.0 if abs(x - 60) <= 12 else 0.0 for x in range(width)] * height
+head = "Gwyddion Simple Field 1.0\nXRes = 121\nYRes = 61\nXReal = 2.42e-07\nYReal = 1.22e-07\nXYUnits = m\nZUnits = m\n".encode()
+open("line.gsf", "wb").write(head + b"\0" * (4 - len(head) % 4) + struct.pack(f"<{len(line)}f", *(1e-9 * z for z in line)))
+IN
+quiet semsurf mesh line.gsf -o line.stl
+for side in left:0deg right:180deg; do
+  quiet semsurf simulate line.gsf --material Si --size 40x16 --pixel-size 4nm --electrons 200 --tilt 15deg --azimuth "${side#*:}" \
+    -o "from_${side%:*}.exr"
+  cp "from_${side%:*}.exr" "${side%:*}.exr"
+done
+rm log.txt

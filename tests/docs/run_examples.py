@@ -59,7 +59,7 @@ def main():
         reader.mkdir()
         (reader / "samples").symlink_to(root / "samples")
         (reader / "data").symlink_to(root / "data")
-        subprocess.run(["bash", root / "tests/docs/readers_files.sh"], cwd=reader, env=environment, check=True)
+        subprocess.run(["bash", root / "tests/docs/readers_files.sh", *(["images"] if "--hand" in rest else [])], cwd=reader, env=environment, check=True)
         for number, commands in enumerate(sections):
             chosen = [c for c in commands if re.search(pattern, c) and bool(BY_HAND.search(c)) == ("--hand" in rest)]
             if not chosen:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Does what a tutorial says: python3 run_page.py PAGE.md SEMSURF [--pictures].
+"""Does what a page says: python3 run_page.py PAGE.md SEMSURF [--pictures] [--readers-files | --readers-images].
 
-Blocks of `sh` are run in one new folder, with `samples` there and SEMSURF as `semsurf`. What the reader brings to FOLDER/PAGE.md,
-readers_files/FOLDER_PAGE.sh beside this script makes there first. A block of `text` after them is what
+Blocks of `sh` are run in one new folder, with `samples` there and SEMSURF as `semsurf`. With --readers-files or --readers-images,
+readers_files.sh makes there first what the reader would bring. A block of `text` after them is what
 they print, among other things: each of its lines is there, in this order, with numbers that are alike (5 %, or 40 % after ±:
 processors round otherwise). With --pictures, pictures of the page, images/PAGE_NAME.png, are made anew from NAME.png
 or FOLDER/NAME.png. Exit code 1 says what differs.
@@ -49,18 +49,12 @@ def missing(wanted, said):
     return None
 
 
-def make_readers_files(folder, environment):
-    script = pathlib.Path(__file__).with_name("readers_files") / f"{PAGE.parent.name}_{PAGE.stem}.sh"
-    if script.exists():
-        done = subprocess.run(["bash", "-eu", script], cwd=folder, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-        if done.returncode:
-            sys.exit(f"{script.name}: exit code {done.returncode}\n{done.stdout}")
-
-
 def run(folder):
     said, commands = "", 0
     environment = {**os.environ, "PATH": f"{PROGRAM.parent}:{os.environ['PATH']}"}
-    make_readers_files(folder, environment)
+    if kind := next((a for a in sys.argv if a in ("--readers-files", "--readers-images")), None):
+        script = pathlib.Path(__file__).with_name("readers_files.sh")
+        subprocess.run(["bash", script, kind.removeprefix("--readers-")], cwd=folder, env=environment, check=True)
     text = PAGE.read_text()
     for block in BLOCK.finditer(text):
         kind, body = block.groups()
