@@ -46,7 +46,7 @@ found, or given by --flat-region; the test says whether their variances lie on a
 
 Examples:
   semsurf noise sem image.tif --plot noise.svg
-  semsurf noise sem image.tif --flat-region 10,20,110,90 --flat-region 300,40,380,120 --flat-region 40,300,140,380)";
+  semsurf noise sem image.tif --flat-region 4,4,24,20 --flat-region 36,28,60,44 --flat-region 8,50,28,66)";
 
 constexpr const char* of_counts =
     R"(Few primaries at one point, many times over; Poisson, log-normal and normal distributions are fitted to the

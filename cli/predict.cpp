@@ -27,8 +27,8 @@ must be of the same pixel size, and of the same material and energy where they a
 surfaces than it has learnt from the image is a guess: 'semsurf info MODEL.json' says what it knows.
 
 Examples:
-  semsurf predict scan.gwy --model si-1keV-3nm.json -o image.exr -o image.png
-  semsurf predict scan.gwy --model si-1keV-3nm.json --png-channel BSE -o bse.png
+  semsurf predict scan.gwy --model si-1keV-3nm.json --resample -o image.exr -o image.png
+  semsurf predict scan.gwy --model si-1keV-3nm.json --resample --png-channel BSE -o bse.png
   semsurf predict fine.gsf --model si-1keV-3nm.json --resample --energy 1keV -o image.vti
   semsurf predict samples/mesa80.toml --model si-1keV-3nm.json --resample -o mesa.exr)";
 

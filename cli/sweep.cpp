@@ -39,7 +39,7 @@ Examples:
   semsurf sweep samples/mesa80.toml --vary energy=500eV,1keV,2keV --vary tilt=0deg:60deg:5deg -o mesa
   semsurf sweep samples/flat.toml --vary tilt=0:80:10 --accuracy 2% -o yields
   semsurf sweep samples/mesa80.toml --vary seed=1:16:1 --part 3/16 -o seeds   a job of an array
-  mpirun -n 4 semsurf sweep samples/mesa80.toml --vary tilt=0deg:60deg:5deg -o mesa)";
+  mpirun -n 4 semsurf sweep samples/mesa80.toml --vary tilt=0deg:60deg:5deg -o tilts)";
 
 struct Options {
   SimulateOptions simulate;

@@ -31,8 +31,8 @@ The table at the end says how far the model is off on each surface, the images' 
 Examples:
   semsurf train --material Si --energy 1keV --pixel-size 3nm -o si-1keV-3nm.json
   semsurf train --pixel-size 3nm --surfaces 16 --hold-out 4 -o si.json
-  semsurf train scan.gwy other.gsf --material Au --energy 5keV --pixel-size 2nm -o gold.json
-  semsurf train a.gsf b.gsf --images a.exr --images b.exr --pixel-size 3nm -o si.json
+  semsurf train scan.gwy large.gsf --material Au --energy 5keV --pixel-size 20nm -o gold.json
+  semsurf train a.gsf b.gsf --images a.exr --images b.exr -o si.json
   semsurf train known.gsf --signal sem.tif --material Si --energy 1keV -o our-sem.json
   semsurf train --pixel-size 3nm --kind filter-bank -o bank.json
   mpirun -n 4 semsurf train --pixel-size 3nm --threads 4 -o si.json

@@ -9,15 +9,25 @@ mkdir -p scans one two
 
 # A scan, an SEM image of the same place, the surface, the tip, and what microscopists point at in both images.
 quiet semsurf sample pads --size 96x72 --electrons 20 -o pads
-copies pads/afm.gsf scan.gwy scan.gsf scan.spm mica.gwy monday.gwy before.gsf large.gsf a.gsf b.gsf known.gsf \
-  scans/monday.spm scans/tuesday.spm
-copies pads/truth.gsf surface.gsf fine.gsf other.gsf eroded.gsf
+copies pads/afm.gsf scan.gsf mica.gwy monday.gwy before.gsf large.gsf
+copies pads/truth.gsf surface.gsf fine.gsf other.gsf eroded.gsf known.gsf a.gsf b.gsf
 cp pads/truth_tip.gsf tip.gsf
 quiet semsurf clean scan.gsf --median 3 -o after.gsf
 cp after.gsf tuesday.gwy
 quiet semsurf level scan.gsf -o flat.gsf
 python3 - <<'IN'
 import json
+import re
+
+# Channels as microscopes name them.
+raw = open("scan.gsf", "rb").read()
+end = raw.index(b"\0")
+values = raw[end + 4 - end % 4:]
+for name, files in (("ZSensor", ["scan.gwy"]), ("Height", ["scan.spm", "scans/monday.spm", "scans/tuesday.spm"])):
+    head = re.sub(rb"Title = .*\n", f"Title = {name}\n".encode(), raw[:end])
+    for file in files:
+        open(file, "wb").write(head + b"\0" * (4 - len(head) % 4) + values)
+
 m = json.load(open("pads/truth.json"))["sem_to_afm"]
 print("sem_x_nm,sem_y_nm,afm_x_nm,afm_y_nm", file=open("places.csv", "w"))
 for x, y in ((-300, -250), (300, -200), (250, 280), (-350, 200)):
@@ -28,11 +38,14 @@ for folder in one two; do
   quiet semsurf level surface.gsf --level-method none -o $folder/surface.vti
 done
 cp one/surface.vti surface.vti
+quiet semsurf level surface.gsf --level-method none -o surface.tif
+cp surface.tif afm.tif
 
 # Images.
 copies pads/sem.tif sem.tif image.tif later.tif
 quiet semsurf predict surface.gsf --model samples/si-1keV-10nm.json --resample -o simulated.exr -o sem.png
 copies sem.png image.png
+copies simulated.exr both.exr a.exr b.exr
 cp simulated.exr sem.exr
 quiet semsurf certainty scan.gsf --tip tip.gsf -o map.tif
 cp map.tif certainty.tif
@@ -40,12 +53,15 @@ quiet oiiotool --create 73x91 1 --fill:color=1 12x9+30+40 -d uint8 -o particles.
 quiet oiiotool --create 73x91 1 --fill:color=1 73x20+0+0 -d uint8 -o substrate.tif
 quiet semsurf simulate samples/mesa80.toml --electrons 4 --size 16x16 --trajectories 20 -o out.exr
 mv out.tracks.vtp tracks.vtp
+quiet semsurf simulate samples/mesa80.toml --electrons 4 --size 16x16 -o mesa.vti
+quiet semsurf simulate samples/rough.toml --electrons 32 --size 32x32 --channels counts,electrons,z_nm,normal,material -o few.exr
 mkdir -p out
 mv out.exr out/cube.exr
 
 # Models and materials.
 copies samples/si-1keV-10nm.json si.json si-1keV-10nm.json
 cp samples/si-1keV-3nm.json .
+quiet semsurf train fine.gsf other.gsf --images simulated.exr --images simulated.exr --pixel-size 10nm --kind filter-bank -o bank.json
 cat >mine.toml <<'IN'
 [[material]]
 name = "nitride"

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs the examples of all help texts, as docs/reference/commands.md lists them: each ends well, or with 4 (the result is
 written, but not to be trusted), on files of a reader that readers_files.sh makes, small.
-Usage: run_examples.py ROOT SEMSURF [--hand] [PATTERN]
-Without --hand those are left out that take more than some seconds (BY_HAND). PATTERN: those alone in which it is found."""
+Usage: run_examples.py ROOT SEMSURF [--small | --as-written] [PATTERN]
+Those that take more than some seconds (SLOW) are left out, or alone are run: with --small on few pixels, electrons and surfaces,
+with --as-written as they are. PATTERN: those alone in which it is found."""
 import os
 import pathlib
 import re
@@ -14,9 +15,32 @@ import time
 
 BLOCK = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
 # Simulations of whole images, trainings, fits and charts.
-BY_HAND = re.compile(r"^(mpirun|semsurf (simulate|train|sweep|chart|profile|refine|reconstruct|register|library build)\b)|compare surface.vti"
-                     r"|sample pads -o pads && ")
-SHELL = re.compile(r"semsurf (completion|\S+( \S+)? \[)|^source|^semsurf \S+ (SHELL|FOLDER|NAME)$")
+SLOW = re.compile(r"^(mpirun|semsurf (simulate|train|sweep|chart|profile|refine|reconstruct|register|library (build|plot)"
+                     r"|noise counts|sample (nist0523-thick|terrain))\b)|compare surface.vti|sample pads -o pads && |materials Si --plot")
+SHELL = re.compile(r"semsurf (completion|\S+( \S+)? \[)|^source| (SHELL|FOLDER|NAME)$")
+# What --small sets, always and in place of what is there. Commands that are not here (profiles, refinements, a change that is seen in an
+# SEM image) have no smaller form that ends well.
+SMALL = {
+    "simulate": ({"--size": "24x18"}, {"--accuracy": "30%", "--time": "5s", "--electrons": "32"}),
+    "sweep": ({"--size": "6x4"}, {"--accuracy": "50%"}),
+    "sweep join": ({}, {}),
+    "train": ({}, {"--surfaces": "3", "--hold-out": "1"}),   # and what small_training() says
+    "noise counts": ({"--electrons": "1,4"}, {}),
+    "sample": ({"--size": "96x72"}, {}),
+    "library build": ({}, {"--accuracy": "20%"}),
+    "library plot": ({"--cascades": "2048"}, {}),
+    "materials": ({}, {}),
+    "chart": ({"--accuracy": "10%", "--surfaces": "3", "--surface-size": "24"}, {}),
+    "register": ({}, {}),
+    "reconstruct": ({"--corrections": "0"}, {}),
+}
+# Two charts of more than two minutes each, and views for which models are trained.
+LARGE = re.compile(r"chart (samples/mesa80|cube)|tilted\.tif")
+# What a command takes for done.
+BEFORE = {
+    "semsurf sweep join mesa": "semsurf sweep samples/mesa80.toml --vary tilt=0deg:30deg:30deg --size 4x4 --electrons 2 -o mesa --part 1/2"
+                               " && semsurf sweep samples/mesa80.toml --vary tilt=0deg:30deg:30deg --size 4x4 --electrons 2 -o mesa --part 2/2",
+}
 LIMIT_S = 900
 
 
@@ -35,6 +59,51 @@ def examples(text):
             yield commands
 
 
+def with_option(words, option, value):
+    """The words of a command with this option, in place of the same one."""
+    if option in words:
+        place = words.index(option)
+        return [*words[:place + 1], value, *words[place + 2:]]
+    return [*words, option, value]
+
+
+def small_training(words):
+    """Options of a training that learns little from what it is given, or from three surfaces."""
+    if "--images" in words or "--signal" in words:
+        return {}
+    kind = words[words.index("--kind") + 1] if "--kind" in words else "facet-network"
+    of_kind = {"facet-network": {"--iterations": "20"}, "slope-table": {"--table-electrons": "100"}}.get(kind, {})
+    own = {} if any(w.endswith(".gsf") for w in words) else {"--surfaces": "3", "--surface-size": "24"}
+    return {**of_kind, **own, **({} if kind == "slope-table" else {"--electrons": "10"})}
+
+
+def small(command):
+    """The same command for a small job; None where there is none."""
+    if LARGE.search(command):
+        return None
+    command = command.replace("mpirun -n 4", "mpirun -n 2")
+    if " register " in command or " reconstruct " in command:
+        command = command.replace("--material Si --energy 1keV", "--model si.json")   # which is trained on the way
+    parts = []
+    for part in command.split(" && "):
+        words = part.split()
+        called = words.index("semsurf")
+        name = next((n for n in (" ".join(words[called + 1:called + 3]), words[called + 1]) if n in SMALL), None)
+        if not name:
+            return None
+        always, in_place = SMALL[name]
+        if name == "train":
+            always = small_training(words)
+        if name == "chart" and "--model" in words:   # of reconstructions
+            always = {"--draws": "1"}
+        for option, value in [*always.items(), *((o, v) for o, v in in_place.items() if o in words)]:
+            words = with_option(words, option, value)
+        if name == "chart" and "--quick" not in words:
+            words.append("--quick")
+        parts.append(" ".join(words))
+    return " && ".join(parts)
+
+
 def run(command, folder, environment):
     try:
         done = subprocess.run(["bash", "-c", command], cwd=folder, env=environment, text=True, stdout=subprocess.PIPE,
@@ -47,7 +116,8 @@ def run(command, folder, environment):
 def main():
     root, program = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
     rest = sys.argv[3:]
-    pattern = next((a for a in rest if a != "--hand"), "")
+    pattern = next((a for a in rest if not a.startswith("--")), "")
+    slow, smaller = {"--small", "--as-written"} & set(rest), "--small" in rest
     sections = list(examples((root / "docs/reference/commands.md").read_text()))
     count, faults = 0, []
     with tempfile.TemporaryDirectory(prefix="semsurf-examples-") as name:
@@ -59,16 +129,19 @@ def main():
         reader.mkdir()
         (reader / "samples").symlink_to(root / "samples")
         (reader / "data").symlink_to(root / "data")
-        subprocess.run(["bash", root / "tests/docs/readers_files.sh", *(["images"] if "--hand" in rest else [])], cwd=reader, env=environment, check=True)
+        subprocess.run(["bash", root / "tests/docs/readers_files.sh", *(["images"] if "--as-written" in rest else [])], cwd=reader,
+                       env=environment, check=True)
         for number, commands in enumerate(sections):
-            chosen = [c for c in commands if re.search(pattern, c) and bool(BY_HAND.search(c)) == ("--hand" in rest)]
+            chosen = [c.replace("/data/cache", "cache") for c in commands if re.search(pattern, c) and bool(SLOW.search(c)) == bool(slow)]
+            if smaller:
+                chosen = [c for c in map(small, chosen) if c]
             if not chosen:
                 continue
             folder = top / str(number)
             shutil.copytree(reader, folder, symlinks=True)
             for command in chosen:
                 began = time.monotonic()
-                fault = run(command, folder, environment)
+                fault = command in BEFORE and run(BEFORE[command], folder, environment) or run(command, folder, environment)
                 count += 1
                 print(f"{time.monotonic() - began:6.1f} s  {command}", flush=True)
                 if fault:

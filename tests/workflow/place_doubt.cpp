@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -68,6 +69,24 @@ TEST(PlaceDoubt, IsInAllDirectionsWhereNoPlaceIsPreferredAndNoneWhereItIsVerifie
   EXPECT_EQ(place_doubt(s.pose, s.sem).along_y, 9);
   s.pose.registration->slides = true;
   EXPECT_NEAR(place_doubt(s.pose, s.sem).along_x, 25, 1e-12);
+}
+
+TEST(PlaceDoubt, IsTowardsRivalsThatWereNotJudged) {
+  Sliding s(12, 0);
+  s.pose.registration->slides = false;
+  for (const double y_nm : {2.0, -4.0, 0.0, 6.0}) {
+    Affine rival;
+    rival.y0 = y_nm;
+    s.pose.registration->rivals.push_back({rival, 0.9, std::abs(y_nm) / 2});
+  }
+  EXPECT_TRUE(s.pose.verified());
+  EXPECT_EQ(largest_px(place_doubt(s.pose, s.sem)), 0);
+  s.pose.every_rival_judged = false;
+  EXPECT_FALSE(s.pose.verified());
+  EXPECT_EQ(place_doubt(s.pose, s.sem).along_x, 0);
+  EXPECT_NEAR(place_doubt(s.pose, s.sem).along_y, (1 + 4 + 9) / 4.0, 1e-12);
+  s.pose.registration->rivals.back().sem_to_afm.y0 = 1000;  // farther than is believed
+  EXPECT_NEAR(largest_px(place_doubt(s.pose, s.sem)), 4, 1e-12);
 }
 
 TEST(PlaceDoubt, StaysFinite) {

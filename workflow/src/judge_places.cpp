@@ -156,6 +156,7 @@ void judge_places(const ReconstructJob& job, ReconstructSummary& s, const Placed
                 [&](const Candidate& c) { return c.value - best > worth_a_closer_look * scale; });
   fit_all(true, 0.3, 1);
   pose.places = judged(all);
+  pose.every_rival_judged = pose.registration->rivals.size() <= most_rivals;
   pose.sem_to_afm = pose.places.front().sem_to_afm;
   reporter.note(fmt::format(
       "registration: of {} places that the images might be at, both together say that this one has "

@@ -42,10 +42,33 @@ PlaceDoubt of_middle(const Pose& pose, const PlacedImage& sem) {
           in_pixels(back.xx * x, back.xy * x, back.yx * y, back.yy * y)};
 }
 
+double largest_slide(const PlacedImage& sem) {
+  return square(std::min(most_px, slide * std::max(sem.values.width(), sem.values.height())));
+}
+
+/// The mean square of how far rivals put the SEM image's middle from where it is.
+PlaceDoubt towards_rivals(const Pose& pose, const PlacedImage& sem) {
+  const Point2 middle{sem.x_nm(sem.values.width() / 2), sem.y_nm(sem.values.height() / 2)};
+  const std::vector<RegistrationRival>& rivals = pose.registration->rivals;
+  const Affine back = inverse(pose.sem_to_afm);
+  PlaceDoubt sum;
+  for (const RegistrationRival& rival : rivals) {
+    const Point2 there = back(rival.sem_to_afm(middle));
+    const double x = (there.x - middle.x) / sem.pitch_x_nm;
+    const double y = (there.y - middle.y) / sem.pitch_y_nm;
+    const auto share = static_cast<double>(rivals.size());
+    sum.along_x += x * x / share;
+    sum.along_y += y * y / share;
+    sum.both += x * y / share;
+  }
+  const double most = largest(sum);
+  const double share = most > 0 ? std::min(1.0, largest_slide(sem) / most) : 0;
+  return {share * sum.along_x, share * sum.along_y, share * sum.both};
+}
+
 PlaceDoubt along_the_slide(const Pose& pose, const PlacedImage& sem) {
   const PlaceDoubt known = of_middle(pose, sem);
-  const double wanted =
-      square(std::min(most_px, slide * std::max(sem.values.width(), sem.values.height())));
+  const double wanted = largest_slide(sem);
   const double most = largest(known);
   if (!std::isfinite(most) || !(most > 0)) return {wanted, wanted, 0};
   const double share = wanted / most;
@@ -62,8 +85,9 @@ PlaceDoubt place_doubt(const Pose& pose, const PlacedImage& sem) {
     doubt.along_x = doubt.along_y =
         square(std::isfinite(stderr_px) ? std::min(stderr_px, most_px) : most_px);
   }
-  if (pose.registration->slides) {
-    const PlaceDoubt also = along_the_slide(pose, sem);
+  if (pose.registration->slides || !pose.every_rival_judged) {
+    const PlaceDoubt also =
+        pose.registration->slides ? along_the_slide(pose, sem) : towards_rivals(pose, sem);
     doubt.along_x += also.along_x;
     doubt.along_y += also.along_y;
     doubt.both += also.both;

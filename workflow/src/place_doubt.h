@@ -9,7 +9,8 @@ namespace surf::workflow {
 
 /// What the SEM image may be displaced by, in its pixels. None where the place is verified; in all
 /// directions where rival places are not told from each other; along the motion that nothing holds,
-/// by a tenth of the image, where the images slide on each other.
+/// by a tenth of the image, where the images slide on each other; towards the rivals, by as much at
+/// most, where there are more of them than were judged.
 PlaceDoubt place_doubt(const Pose& pose, const PlacedImage& sem);
 
 /// By how many pixels that is along the direction in which it is most.

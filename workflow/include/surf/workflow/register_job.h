@@ -66,14 +66,17 @@ struct Pose {
   PlacedImage simulated;
   /// Places that rival each other, judged by both images, likeliest first. Empty: there were none.
   std::vector<JudgedPlace> places;
+  bool every_rival_judged = true;  ///< and not the best of many alone
 
   /// Both images together prefer one of the places that were judged.
   bool preferred() const {
     return !places.empty() && places.front().explained && places.front().probability >= 0.95;
   }
-  /// Both images together say which place is meant. Where they slide on each other they do not,
-  /// because there are more places than those that were judged.
-  bool decided() const { return preferred() && !(registration && registration->slides); }
+  /// Both images together say which place is meant. Where they slide on each other, or where more
+  /// places rival than were judged, they do not.
+  bool decided() const {
+    return preferred() && every_rival_judged && !(registration && registration->slides);
+  }
   bool verified() const {
     return !registration || registration->verdict == RegistrationVerdict::verified || decided();
   }
