@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs the examples of all help texts, as docs/reference/commands.md lists them: each ends well, or with 4 (the result is
-written, but not to be trusted), on files of a reader that readers_files.sh makes, small.
+"""Runs the examples of all help texts, as docs/reference/commands.md lists them, and of pages that are made of such (PAGES): each
+ends well, or with 4 (the result is written, but not to be trusted), on files of a reader that readers_files.sh makes, small.
 Usage: run_examples.py ROOT SEMSURF [--small | --as-written] [PATTERN]
 Those that take more than some seconds (SLOW) are left out, or alone are run: with --small on few pixels, electrons and surfaces,
 with --as-written as they are. PATTERN: those alone in which it is found."""
@@ -13,11 +13,13 @@ import sys
 import tempfile
 import time
 
+PAGES = ("docs/reference/commands.md", "docs/how-to/chart.md", "docs/how-to/many_machines.md")
 BLOCK = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
 # Simulations of whole images, trainings, fits and charts.
 SLOW = re.compile(r"^(mpirun|semsurf (simulate|train|sweep|chart|profile|refine|reconstruct|register|library (build|plot)"
                      r"|noise counts|sample (nist0523-thick|terrain))\b)|compare surface.vti|sample pads -o pads && |materials Si --plot")
-SHELL = re.compile(r"semsurf (completion|\S+( \S+)? \[)|^source| (SHELL|FOLDER|NAME)$")
+# No commands that can be run; and one that refines a whole reconstruction, which is an hour's work, by the options of another.
+SHELL = re.compile(r"semsurf (completion|\S+( \S+)? \[)|^source| (SHELL|FOLDER|NAME|\.\.\.)$|wafer\.toml|refine result/")
 # What --small sets, always and in place of what is there. Commands that are not here (profiles, refinements, a change that is seen in an
 # SEM image) have no smaller form that ends well.
 SMALL = {
@@ -34,12 +36,13 @@ SMALL = {
     "register": ({}, {}),
     "reconstruct": ({"--corrections": "0"}, {}),
 }
-# Two charts of more than two minutes each, and views for which models are trained.
-LARGE = re.compile(r"chart (samples/mesa80|cube)|tilted\.tif")
-# What a command takes for done.
+LARGE = re.compile(r"chart (samples/mesa80|cube)")   # minutes in any case
+# What a command takes for done: by its beginning.
+SIMULATED = "semsurf simulate surface.gsf --material Si --pixel-size 10nm --electrons 50 -q"
 BEFORE = {
-    "semsurf sweep join mesa": "semsurf sweep samples/mesa80.toml --vary tilt=0deg:30deg:30deg --size 4x4 --electrons 2 -o mesa --part 1/2"
-                               " && semsurf sweep samples/mesa80.toml --vary tilt=0deg:30deg:30deg --size 4x4 --electrons 2 -o mesa --part 2/2",
+    "semsurf sweep join ": "rm -rf mesa seeds; for part in 1/2 2/2; do semsurf sweep samples/mesa80.toml --vary seed=1:4:1 "
+                           "--size 4x4 --electrons 2 -o mesa --part $part || exit; done; cp -r mesa seeds",
+    "semsurf reconstruct --afm scan.gwy --sem up.tif": f"{SIMULATED} -o up.tif && {SIMULATED} --tilt 3deg -o tilted.tif",
 }
 LIMIT_S = 900
 
@@ -52,7 +55,7 @@ def examples(text):
             if goes_on:
                 commands[-1] += " " + line.strip().rstrip("\\")
             elif not line.startswith("    "):
-                commands.append(re.split(r" {3,}", line.rstrip("\\"))[0].strip())
+                commands.append(re.split(r" {3,}| {2,}#", line.rstrip("\\"))[0].strip())
             goes_on = line.endswith("\\")
         commands = [c for c in commands if c.startswith(("semsurf", "mpirun")) and not SHELL.search(c)]
         if commands:
@@ -81,7 +84,7 @@ def small(command):
     """The same command for a small job; None where there is none."""
     if LARGE.search(command):
         return None
-    command = command.replace("mpirun -n 4", "mpirun -n 2")
+    command = re.sub(r"mpirun -n \d", "mpirun -n 2", command)
     if " register " in command or " reconstruct " in command:
         command = command.replace("--material Si --energy 1keV", "--model si.json")   # which is trained on the way
     parts = []
@@ -118,7 +121,7 @@ def main():
     rest = sys.argv[3:]
     pattern = next((a for a in rest if not a.startswith("--")), "")
     slow, smaller = {"--small", "--as-written"} & set(rest), "--small" in rest
-    sections = list(examples((root / "docs/reference/commands.md").read_text()))
+    sections = [commands for page in PAGES for commands in examples((root / page).read_text())]
     count, faults = 0, []
     with tempfile.TemporaryDirectory(prefix="semsurf-examples-") as name:
         top = pathlib.Path(name)
@@ -141,7 +144,8 @@ def main():
             shutil.copytree(reader, folder, symlinks=True)
             for command in chosen:
                 began = time.monotonic()
-                fault = command in BEFORE and run(BEFORE[command], folder, environment) or run(command, folder, environment)
+                before = next((b for start, b in BEFORE.items() if command.startswith(start)), "true")
+                fault = run(before, folder, environment) or run(command, folder, environment)
                 count += 1
                 print(f"{time.monotonic() - began:6.1f} s  {command}", flush=True)
                 if fault:

@@ -75,7 +75,8 @@ STEPS = {
         "FixedCalibration": (1, "reconstruction.fixed_calibration=on"), "RefineTip": (1, "reconstruction.refine_tip=on"),
         "KeepTip": (1, "reconstruction.keep_tip=on"), "NoUncertainty": (0, "reconstruction.no_uncertainty=off"),
         "Probes": (3, "reconstruction.probes=3"), "ModelError": (0.02, "reconstruction.model_error=0.02"),
-        "Corrections": (0, "reconstruction.corrections=0"), "CorrectionElectrons": (8, "reconstruction.correction_electrons=8"),
+        "Corrections": (1, "reconstruction.corrections=1"),
+        "CorrectionElectrons": (8, "reconstruction.correction_electrons=8", {"Corrections": 1}),
         "LineJitter": (0.3, "reconstruction.line_jitter=0.3"),
         "Film": ("C", "reconstruction.film=C", {"Gains": "2,3", "Offset": "4"}),
         "Tilt": ("3", "beam.tilt_deg=3", {"views": True}),
@@ -145,7 +146,7 @@ def step(name, properties):
              "CompareSurfaces": {"Input": scan, "After": scan, "Simulations": 50},
              "CalibrateSEM": {"Input": sem, "Simulated": sem}, "CheckandRepairMesh": {"Input": sphere()},
              "SimplifyMesh": {"Input": sphere()}, "RegisterAFMandSEM": chain,
-             "Reconstruct": chain | {"UseTransform": 1, "Iterations": 1, "NoUncertainty": 1},
+             "Reconstruct": chain | {"UseTransform": 1, "Iterations": 1, "NoUncertainty": 1, "Corrections": 0},
              "AFMTip": {"TipSize": 5, "Radius": 5, "Pitch": 3}}
     properties = usual[name] | properties
     if properties.pop("landmarks", False):

@@ -30,7 +30,7 @@ def test_holds_no_traces_of_a_machine(notebook):
     assert cells_of(notebook)[0]["source"][0].startswith("# ")
 
 
-SHORT = ("first_image", "afm_scan")
+SHORT = ("first_image",)
 
 
 @pytest.mark.parametrize("notebook", [
