@@ -36,7 +36,7 @@ SMALL = {
     "register": ({}, {}),
     "reconstruct": ({"--corrections": "0"}, {}),
 }
-LARGE = re.compile(r"chart (samples/mesa80|cube)")   # minutes in any case
+LARGE = re.compile(r"chart (samples/mesa80|cube|scan)|chart pads")   # minutes in any case, and other tests draw them
 # What a command takes for done: by its beginning.
 SIMULATED = "semsurf simulate surface.gsf --material Si --pixel-size 10nm --electrons 50 -q"
 BEFORE = {
@@ -97,8 +97,6 @@ def small(command):
         always, in_place = SMALL[name]
         if name == "train":
             always = small_training(words)
-        if name == "chart" and "--model" in words:   # of reconstructions
-            always = {"--draws": "1"}
         for option, value in [*always.items(), *((o, v) for o, v in in_place.items() if o in words)]:
             words = with_option(words, option, value)
         if name == "chart" and "--quick" not in words:
@@ -122,7 +120,7 @@ def main():
     pattern = next((a for a in rest if not a.startswith("--")), "")
     slow, smaller = {"--small", "--as-written"} & set(rest), "--small" in rest
     sections = [commands for page in PAGES for commands in examples((root / page).read_text())]
-    count, faults = 0, []
+    count, faults, done = 0, [], set()
     with tempfile.TemporaryDirectory(prefix="semsurf-examples-") as name:
         top = pathlib.Path(name)
         environment = {**os.environ, "PATH": f"{program.parent}:{os.environ['PATH']}", "SEMSURF_CACHE": str(top / "cache"),
@@ -138,8 +136,10 @@ def main():
             chosen = [c.replace("/data/cache", "cache") for c in commands if re.search(pattern, c) and bool(SLOW.search(c)) == bool(slow)]
             if smaller:
                 chosen = [c for c in map(small, chosen) if c]
+            chosen = [c for c in chosen if c not in done]
             if not chosen:
                 continue
+            done.update(chosen)
             folder = top / str(number)
             shutil.copytree(reader, folder, symlinks=True)
             for command in chosen:

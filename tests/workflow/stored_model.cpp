@@ -42,7 +42,7 @@ TEST(StoredModelTest, IsTrainedAfterANoteOfHowLongThatTakesAndKept) {
   ASSERT_GE(first.notes.size(), 2u);
   EXPECT_THAT(first.notes[0],
               HasSubstr("no model of Si at 1000 eV with pixels of 3.00 nm is kept"));
-  EXPECT_THAT(first.notes[1], ContainsRegex("the training takes about [0-9]+ (s|minutes);"));
+  EXPECT_THAT(first.notes[1], ContainsRegex("the training takes about [0-9]+ (s|minutes) more,"));
   EXPECT_EQ(made.trained.record.scenes.size(), 6u);
   const StoredModel kept = find_model(request, again.reporter());
   EXPECT_FALSE(kept.made);

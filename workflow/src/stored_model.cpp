@@ -208,8 +208,8 @@ StoredModel find_model(const ModelRequest& r, const Reporter& reporter) {
       r.material.name, energy_of(r), format_length(r.pixel_nm), file.string()));
   const TrainJob job = training(r, file);
   note(
-      fmt::format("the training takes about {}; stop it when you like: the same command goes on "
-                  "from there",
+      fmt::format("the training takes about {} more, as its first images tell; stop it when you "
+                  "like: the same command goes on from there",
                   in_minutes(expected_training_s(job, reporter))));
   if (!run(job, reporter).complete) throw Interrupted();
   fs::path images = file;
