@@ -22,7 +22,7 @@ Exit code 4: the gains cannot be trusted, and the warnings say why.
 Examples:
   semsurf calibrate sem.tif --pixel-size 3nm --images simulated.exr -o calibration.json --residual residual.exr
   semsurf calibrate sem.tif surface.gsf --model bank.json --folded sem-bank.json -o calibration.json
-  semsurf calibrate both.exr:SE --images simulated.exr --fit SE --offset 12 -o calibration.json
+  semsurf calibrate sem.exr:SE --images simulated.exr --fit SE --offset 12 -o calibration.json
   semsurf calibrate sem.png --pixel-size 2nm --images simulated.exr --ratio 0.4 --white 255 -o calibration.json)";
 
 }  // namespace

@@ -45,8 +45,7 @@ cp surface.tif afm.tif
 copies pads/sem.tif sem.tif image.tif later.tif
 quiet semsurf predict surface.gsf --model samples/si-1keV-10nm.json --resample -o simulated.exr -o sem.png
 copies sem.png image.png
-copies simulated.exr both.exr a.exr b.exr
-cp simulated.exr sem.exr
+copies simulated.exr sem.exr a.exr b.exr
 quiet semsurf certainty scan.gsf --tip tip.gsf -o map.tif
 cp map.tif certainty.tif
 quiet oiiotool --create 73x91 1 --fill:color=1 12x9+30+40 -d uint8 -o particles.png

@@ -53,6 +53,15 @@ TEST_F(JudgePlaces, APlaceWithoutRivalsStays) {
   EXPECT_FALSE(summary_.pose->verified());
 }
 
+TEST_F(JudgePlaces, MoreRivalsThanAreJudgedLeaveThePlaceOpen) {
+  hesitate(elsewhere, shift);
+  std::vector<RegistrationRival>& rivals = summary_.pose->registration->rivals;
+  rivals.resize(4, rivals.front());
+  judge_places(job_, summary_, job_.sem->image, afm_, {});
+  EXPECT_FALSE(summary_.pose->every_rival_judged);
+  EXPECT_FALSE(summary_.pose->verified());
+}
+
 /// An SEM image of nothing but noise agrees with any place.
 TEST_F(JudgePlaces, TwoSurfacesThatBothExplainTheImagesAreBothGiven) {
   PlacedImage& image = job_.sem->image;

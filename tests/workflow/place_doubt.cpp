@@ -85,6 +85,8 @@ TEST(PlaceDoubt, IsTowardsRivalsThatWereNotJudged) {
   EXPECT_FALSE(s.pose.verified());
   EXPECT_EQ(place_doubt(s.pose, s.sem).along_x, 0);
   EXPECT_NEAR(place_doubt(s.pose, s.sem).along_y, (1 + 4 + 9) / 4.0, 1e-12);
+  s.pose.registration->sem_to_afm.x0 = 8;  // a rival was preferred
+  EXPECT_NEAR(place_doubt(s.pose, s.sem).along_x, 4 / 4.0, 1e-12);
   s.pose.registration->rivals.back().sem_to_afm.y0 = 1000;  // farther than is believed
   EXPECT_NEAR(largest_px(place_doubt(s.pose, s.sem)), 4, 1e-12);
 }

@@ -14,6 +14,16 @@ constexpr double slide = 0.1;
 
 double square(double x) { return x * x; }
 
+PlaceDoubt scaled(const PlaceDoubt& d, double factor) {
+  return {factor * d.along_x, factor * d.along_y, factor * d.both};
+}
+
+void add(PlaceDoubt& sum, const PlaceDoubt& d) {
+  sum.along_x += d.along_x;
+  sum.along_y += d.along_y;
+  sum.both += d.both;
+}
+
 /// The larger variance of any direction.
 double largest(const PlaceDoubt& d) {
   return 0.5 * (d.along_x + d.along_y) + std::hypot(0.5 * (d.along_x - d.along_y), d.both);
@@ -46,24 +56,23 @@ double largest_slide(const PlacedImage& sem) {
   return square(std::min(most_px, slide * std::max(sem.values.width(), sem.values.height())));
 }
 
-/// The mean square of how far rivals put the SEM image's middle from where it is.
+/// The mean square of how far other places put the SEM image's middle from where it is: rivals, and
+/// the registration's own place if a rival was preferred.
 PlaceDoubt towards_rivals(const Pose& pose, const PlacedImage& sem) {
   const Point2 middle{sem.x_nm(sem.values.width() / 2), sem.y_nm(sem.values.height() / 2)};
-  const std::vector<RegistrationRival>& rivals = pose.registration->rivals;
   const Affine back = inverse(pose.sem_to_afm);
   PlaceDoubt sum;
-  for (const RegistrationRival& rival : rivals) {
-    const Point2 there = back(rival.sem_to_afm(middle));
+  const auto include = [&](const Affine& other) {
+    const Point2 there = back(other(middle));
     const double x = (there.x - middle.x) / sem.pitch_x_nm;
     const double y = (there.y - middle.y) / sem.pitch_y_nm;
-    const auto share = static_cast<double>(rivals.size());
-    sum.along_x += x * x / share;
-    sum.along_y += y * y / share;
-    sum.both += x * y / share;
-  }
-  const double most = largest(sum);
-  const double share = most > 0 ? std::min(1.0, largest_slide(sem) / most) : 0;
-  return {share * sum.along_x, share * sum.along_y, share * sum.both};
+    add(sum, {x * x, y * y, x * y});
+  };
+  include(pose.registration->sem_to_afm);
+  for (const RegistrationRival& rival : pose.registration->rivals) include(rival.sem_to_afm);
+  const PlaceDoubt mean = scaled(sum, 1 / static_cast<double>(pose.registration->rivals.size()));
+  const double most = largest(mean);
+  return most > 0 ? scaled(mean, std::min(1.0, largest_slide(sem) / most)) : mean;
 }
 
 PlaceDoubt along_the_slide(const Pose& pose, const PlacedImage& sem) {
@@ -71,8 +80,7 @@ PlaceDoubt along_the_slide(const Pose& pose, const PlacedImage& sem) {
   const double wanted = largest_slide(sem);
   const double most = largest(known);
   if (!std::isfinite(most) || !(most > 0)) return {wanted, wanted, 0};
-  const double share = wanted / most;
-  return {share * known.along_x, share * known.along_y, share * known.both};
+  return scaled(known, wanted / most);
 }
 
 }  // namespace
@@ -85,13 +93,8 @@ PlaceDoubt place_doubt(const Pose& pose, const PlacedImage& sem) {
     doubt.along_x = doubt.along_y =
         square(std::isfinite(stderr_px) ? std::min(stderr_px, most_px) : most_px);
   }
-  if (pose.registration->slides || !pose.every_rival_judged) {
-    const PlaceDoubt also =
-        pose.registration->slides ? along_the_slide(pose, sem) : towards_rivals(pose, sem);
-    doubt.along_x += also.along_x;
-    doubt.along_y += also.along_y;
-    doubt.both += also.both;
-  }
+  if (pose.registration->slides) add(doubt, along_the_slide(pose, sem));
+  else if (!pose.every_rival_judged) add(doubt, towards_rivals(pose, sem));
   return doubt;
 }
 

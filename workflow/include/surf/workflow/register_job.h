@@ -66,7 +66,8 @@ struct Pose {
   PlacedImage simulated;
   /// Places that rival each other, judged by both images, likeliest first. Empty: there were none.
   std::vector<JudgedPlace> places;
-  bool every_rival_judged = true;  ///< and not the best of many alone
+  /// False: the registration names more rivals than were judged.
+  bool every_rival_judged = true;
 
   /// Both images together prefer one of the places that were judged.
   bool preferred() const {
