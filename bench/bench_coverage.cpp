@@ -3,14 +3,15 @@
 // `semsurf sample` made, also by what the model does not know (--physics, --tip-lean,
 // --gain-drift):
 //   bench_coverage MODEL.json FOLDER ...
-//   bench_coverage MODEL.json --without-corrections FOLDER ...
+//   bench_coverage MODEL.json --without-corrections [--model-error SHARE] FOLDER ...
 //   bench_coverage MODEL.json --chart CHART.svg FOLDER ...   error against time
 //   bench_coverage MODEL.json --foretell FOLDER ...   squares of the image that were left out
 // The peer is the scan eroded by the true tip, put in place by the true map; "alone" is the
 // reconstruction of the scan without the SEM image, put in place likewise. Errors are rms in nm,
 // less the median; shares are of heights within one and two standard deviations (68 and 95 would be
 // right). "Held" are the heights that something holds: of all that are not flat the 80 % whose
-// posterior deviation at the truth, with true tip, map and noise, is least. Of the whole and by
+// posterior deviation at the truth, with true tip, map and noise, is least. "Interval" is that of
+// 95 %, from draws. Of the whole and by
 // region (surf/workflow/reconstruct_job.h, RegionReport), and pooled.
 #include <fmt/format.h>
 
@@ -33,7 +34,7 @@ namespace {
 using namespace surf;
 
 struct Pooled {
-  double pixels = 0, one = 0, two = 0;
+  double pixels = 0, one = 0, two = 0, interval = 0;
 };
 
 /// Begins, and ends, at a state.
@@ -119,7 +120,7 @@ double off_in_place(const HeightField& surface, const workflow::SampleTruth& s) 
 }
 
 void judge(const std::filesystem::path& model, const std::string& folder, int corrections,
-           std::map<std::string, Pooled>& pooled) {
+           double model_error, std::map<std::string, Pooled>& pooled) {
   const workflow::SampleTruth s = workflow::read_sample(folder);
   workflow::ReconstructJob job;
   job.afm.emplace();
@@ -131,6 +132,7 @@ void judge(const std::filesystem::path& model, const std::string& folder, int co
   job.model.file = model;
   job.truth = s.truth;
   job.corrections = corrections;
+  job.model_error = model_error;
   const auto begin = std::chrono::steady_clock::now();
   const workflow::ReconstructSummary r = workflow::run(job);
   const double seconds =
@@ -144,17 +146,20 @@ void judge(const std::filesystem::path& model, const std::string& folder, int co
       r.truth->rms_nm, r.truth->plane_rms_nm, peer, r.truth->rms_nm / peer,
       off_in_place(workflow::run(alone).result.surface, s), 100 * r.result.sem_discrepancy_share);
   const auto print = [&](const std::string& region, double pixels, double rms, double one,
-                         double two) {
-    fmt::print("  {:9} {:5.1f} %  off {:6.2f}  within one {:5.1f} %, two {:5.1f} %\n", region,
-               100 * pixels / static_cast<double>(r.truth->pixels), rms, 100 * one, 100 * two);
+                         double two, double interval) {
+    fmt::print(
+        "  {:9} {:5.1f} %  off {:6.2f}  within one {:5.1f} %, two {:5.1f} %, interval {:5.1f} %\n",
+        region, 100 * pixels / static_cast<double>(r.truth->pixels), rms, 100 * one, 100 * two,
+        100 * interval);
     Pooled& all = pooled[region];
     all.pixels += pixels, all.one += pixels * one, all.two += pixels * two;
+    all.interval += pixels * interval;
   };
   print("all", static_cast<double>(r.truth->pixels), r.truth->rms_nm, r.truth->coverage_1,
-        r.truth->coverage_2);
+        r.truth->coverage_2, r.truth->in_interval);
   for (const workflow::RegionReport& region : r.truth->regions)
     print(region.name, static_cast<double>(region.pixels), region.rms_nm, region.coverage_1,
-          region.coverage_2);
+          region.coverage_2, region.in_interval);
   const Mask where = held(s, *r.model);
   const HeightField eroded = reconstruction::eroded(s.afm, 0);
   const double ours = rms_within(where, r.result.surface.z_nm, s.truth.z_nm, r.truth->offset_nm),
@@ -200,9 +205,10 @@ void foretell(const std::filesystem::path& model, const std::string& folder) {
                    r.sem_noise->variance(r.result.simulated_sem(x, y));
         n += 1;
       }
-    fmt::print(" {:.3f} of the noise with a model error of {:.0f} %{}", std::sqrt(squares / n),
-               100 * share, share == 0 ? "," : "\n");
+    fmt::print(" {:.3f} of the noise with a model error of {:.0f} %,", std::sqrt(squares / n),
+               100 * share);
   }
+  fmt::print("\n");
   std::fflush(stdout);
 }
 
@@ -252,9 +258,10 @@ io::PlotPanel panel_of(const std::filesystem::path& model, const std::string& fo
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    fmt::print(stderr,
-               "bench_coverage MODEL.json [--without-corrections | --foretell | --chart CHART.svg] "
-               "FOLDER ...\n");
+    fmt::print(
+        stderr,
+        "bench_coverage MODEL.json [--without-corrections [--model-error SHARE] | --foretell "
+        "| --chart CHART.svg] FOLDER ...\n");
     return 2;
   }
   if (std::string(argv[2]) == "--foretell") {
@@ -271,9 +278,13 @@ int main(int argc, char** argv) {
   std::map<std::string, Pooled> pooled;
   const bool fast = std::string(argv[2]) == "--without-corrections";
   const int corrections = fast ? 0 : workflow::ReconstructJob().corrections;
-  for (int i = fast ? 3 : 2; i < argc; ++i) judge(argv[1], argv[i], corrections, pooled);
+  int first = fast ? 3 : 2;
+  double model_error = workflow::ReconstructJob().model_error;
+  if (first + 1 < argc && std::string(argv[first]) == "--model-error")
+    model_error = std::stod(argv[first + 1]), first += 2;
+  for (int i = first; i < argc; ++i) judge(argv[1], argv[i], corrections, model_error, pooled);
   fmt::print("pooled\n");
   for (const auto& [region, p] : pooled)
-    fmt::print("  {:9} within one {:5.1f} %, two {:5.1f} %\n", region, 100 * p.one / p.pixels,
-               100 * p.two / p.pixels);
+    fmt::print("  {:9} within one {:5.1f} %, two {:5.1f} %, interval {:5.1f} %\n", region,
+               100 * p.one / p.pixels, 100 * p.two / p.pixels, 100 * p.interval / p.pixels);
 }

@@ -38,6 +38,7 @@
 #include "posterior/scalars.h"
 #include "posterior/scaled_errors.h"
 #include "reconstruction/gaussian_basis.h"
+#include "reconstruction/height_intervals.h"
 #include "reconstruction/posterior.h"
 #include "surf/core/parallel.h"
 #include "surf/io/model/model_file.h"
@@ -49,6 +50,8 @@ using namespace surf::bench;
 using namespace surf::reconstruction;
 
 const char* const no_bias = ", no bias";
+/// What walls may be displaced by, in pixels: deviations with other values are counted beside.
+constexpr std::array edge_doubts_px{0.0, 0.15, 0.25, 0.3};
 
 struct Errors {
   std::vector<std::pair<std::string, std::vector<OneError>>> of;
@@ -64,33 +67,45 @@ struct Errors {
 const char* const map_names[affine_numbers] = {"rotation", "pixel size x", "pixel size y",
                                                "shear",    "shift x",      "shift y"};
 
-/// The variances that `reconstruct` adds for the places of walls, which only a model of the image
-/// that is off needs.
+/// The variances that `reconstruct` adds for the places of walls.
 Grid<double> variances_by_walls(const Fitted& f) {
   const Grid<double> soft = f.inner(GaussianBasis(1, 1).sum(f.at.z_nm));
   Grid<double> out(soft.width(), soft.height());
   for (int y = 1; y + 1 < out.height(); ++y)
     for (int x = 1; x + 1 < out.width(); ++x)
-      out(x, y) = 0.25 * 0.15 * 0.15 *
+      out(x, y) = 0.25 * edge_doubt_px * edge_doubt_px *
                   (std::pow(soft(x + 1, y) - soft(x - 1, y), 2) +
                    std::pow(soft(x, y + 1) - soft(x, y - 1), 2));
   return out;
 }
 
+std::string with_edges(std::size_t k) { return fmt::format(", walls {} px", edge_doubts_px[k]); }
+
 void add_heights(const DrawnScene& scene, const Fitted& f, Errors& errors) {
   const Grid<double> walls = variances_by_walls(f);
   for (const workflow::PixelRegion& region :
        workflow::pixel_regions(scene.truth, f.result.data_support)) {
-    std::vector<OneError> stated, bare;
+    std::vector<OneError> stated, interval;
+    std::array<std::vector<OneError>, edge_doubts_px.size()> others;
     for (std::size_t i = 0; i < walls.size(); ++i) {
       if (!region.pixels.data()[i]) continue;
       const double off = f.result.surface.z_nm.data()[i] - scene.truth.z_nm.data()[i];
       const double deviation = f.result.deviation_nm.data()[i];
       stated.push_back({off, deviation});
-      bare.push_back({off, std::sqrt(deviation * deviation - walls.data()[i])});
+      const double truth = scene.truth.z_nm.data()[i];
+      const bool inside =
+          truth >= f.result.lower_nm.data()[i] && truth <= f.result.upper_nm.data()[i];
+      interval.push_back({inside ? 0.0 : 3.0, 1});
+      for (std::size_t k = 0; k < others.size(); ++k)
+        others[k].push_back(
+            {off,
+             std::sqrt(deviation * deviation +
+                       walls.data()[i] * (std::pow(edge_doubts_px[k] / edge_doubt_px, 2) - 1))});
     }
     errors.of.emplace_back(fmt::format("heights, {}", region.name), stated);
-    errors.of.emplace_back(fmt::format("heights, {}, no walls' places", region.name), bare);
+    errors.of.emplace_back(fmt::format("heights, {}, in the interval", region.name), interval);
+    for (std::size_t k = 0; k < others.size(); ++k)
+      errors.of.emplace_back(fmt::format("heights, {}{}", region.name, with_edges(k)), others[k]);
   }
 }
 
@@ -102,7 +117,7 @@ MapChange numbers_of(const AffineParts& p) {
 void add_functions(const DrawnScene& scene, const Fitted& f, Errors& errors) {
   const Curvature a =
       expected_curvature(f.objective, f.at, 1, 1, Precision::single_where_it_holds, {});
-  const Step bias = prior_bias(f.objective, f.at, a, {});
+  const Step bias = prior_bias(f.objective, f.at, a, {}, {});
   std::vector<Step> functions = few_functions(f.objective, f.at);
   std::vector<std::pair<std::string, double>> off;
   // The middle of the image is at 0, so that its shift is that of the map.
@@ -160,7 +175,9 @@ void print_tables(const std::vector<Errors>& found) {
   }
   fmt::print("  {:32} {:>13}   {:>13}   {:>14}   {:>13}   {:>8} {:>8}\n", "", "within one, %",
              "within two, %", "mean", "rms", "error", "stated");
-  for (const char* const also : {"", ", no walls' places"})
+  std::vector<std::string> kinds{"", ", in the interval"};
+  for (std::size_t k = 0; k < edge_doubts_px.size(); ++k) kinds.push_back(with_edges(k));
+  for (const std::string& also : kinds)
     for (const char* const region : {"all", "flat", "wall", "foot", "untouched"})
       all.print_coverage(fmt::format("heights, {}{}", region, also));
   std::vector<std::string> few(std::begin(map_names), std::end(map_names));
@@ -196,9 +213,11 @@ int calibrate(const std::shared_ptr<const ImageModel>& model, int fits, std::uin
       "{} fits, seeds {} to {}, each twice, in {:.1f} minutes\n\n"
       "Errors over posterior deviations. Expected: 68.3 % within one, 95.4 % within two, mean 0,\n"
       "root mean square 1. Sampling errors are of the scatter of fits. Last: root mean squares of\n"
-      "errors and of deviations, in nm, radians, parts of 1 or grey levels. Heights without\n"
-      "walls' places: the 0.15 pixels for a model of the image that is off are taken off. Without\n"
-      "bias: so is the bias by the prior.\n\n"
+      "errors and of deviations, in nm, radians, parts of 1 or grey levels. Intervals are of 95 "
+      "%:\n"
+      "only \"within\" counts. \"Walls ... px\": deviations as if walls might be displaced by so "
+      "many\n"
+      "pixels. Without bias: the bias by the prior is taken off.\n\n"
       "Fits that begin at the given values\n",
       fits, first, first + found.size() - 1,
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() / 60);

@@ -122,16 +122,18 @@ void print_summary(const workflow::ReconstructSummary& s, const workflow::Recons
                      std::pow(s.truth->rms_nm / std::max(s.truth->start_rms_nm, 1e-300), 2),
                      s.truth->offset_nm));
     if (s.truth->coverage_2 > 0)
-      line("", fmt::format("{:.1f} % within one, {:.1f} % within two standard deviations",
-                           100 * s.truth->coverage_1, 100 * s.truth->coverage_2));
+      line("", fmt::format("{:.1f} % within one, {:.1f} % within two standard deviations; {:.1f} % "
+                           "within their 95 % interval",
+                           100 * s.truth->coverage_1, 100 * s.truth->coverage_2,
+                           100 * s.truth->in_interval));
     for (const workflow::RegionReport& region : s.truth->regions)
-      line("",
-           fmt::format(
-               "{:<9}  {:4.1f} %: {:.3g} nm off, {:.3g} nm stated; {:.1f} % within one, "
-               "{:.1f} % within two",
-               region.name,
-               100 * static_cast<double>(region.pixels) / static_cast<double>(s.truth->pixels),
-               region.rms_nm, region.stated_nm, 100 * region.coverage_1, 100 * region.coverage_2));
+      line("", fmt::format(
+                   "{:<9}  {:4.1f} %: {:.3g} nm off, {:.3g} nm stated; {:.1f} % within one, "
+                   "{:.1f} % within two, {:.1f} % in the interval",
+                   region.name,
+                   100 * static_cast<double>(region.pixels) / static_cast<double>(s.truth->pixels),
+                   region.rms_nm, region.stated_nm, 100 * region.coverage_1,
+                   100 * region.coverage_2, 100 * region.in_interval));
   }
   print_written(s.written);
 }

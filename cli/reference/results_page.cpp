@@ -198,6 +198,8 @@ std::string results_page() {
                   {"valid", "1 where there is a value"},
                   {"certain", "1 where an eroded scan is the surface, else 0"},
                   {"deviation_nm", "standard deviation of a reconstructed height"},
+                  {"lower_nm, upper_nm",
+                   "95 % of draws of a reconstructed height lie between these two"},
                   {"data_support",
                    "what holds a reconstructed height: 1 the tip touched it, 2 the SEM image "
                    "says it, 3 both, 0 its neighbours"},

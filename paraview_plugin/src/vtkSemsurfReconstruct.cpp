@@ -202,6 +202,10 @@ int vtkSemsurfReconstruct::RequestData(vtkInformation*, vtkInformationVector** i
           }
           if (!r.deviation_nm.empty())
             pv::add_values(surface, std::move(r.deviation_nm), "deviation_nm", "nm");
+          if (!r.lower_nm.empty()) {
+            pv::add_values(surface, std::move(r.lower_nm), "lower_nm", "nm");
+            pv::add_values(surface, std::move(r.upper_nm), "upper_nm", "nm");
+          }
           if (!r.data_support.empty())
             pv::add_values(surface, std::move(r.data_support), "data_support", "1");
           if (r.start.z_nm.size() == r.surface.z_nm.size())

@@ -204,6 +204,10 @@ py::list texts(const std::vector<std::string>& lines) {
 void add_surface(Reconstruction& r, py::dict& d) {
   const Placement placement = r.surface.placement();
   if (!r.deviation_nm.empty()) d["stderr"] = array_of(std::move(r.deviation_nm));
+  if (!r.lower_nm.empty()) {
+    d["lower"] = array_of(std::move(r.lower_nm));
+    d["upper"] = array_of(std::move(r.upper_nm));
+  }
   if (!r.data_support.empty()) d["held_by"] = array_of(std::move(r.data_support));
   if (!r.simulated_sem.empty())
     d["simulated_sem"] = picture_of(std::move(r.simulated_sem), placement, "simulated");
@@ -224,6 +228,7 @@ py::object found_of(const workflow::TruthReport& truth) {
   d["offset_nm"] = truth.offset_nm;
   d["coverage_1"] = truth.coverage_1;
   d["coverage_2"] = truth.coverage_2;
+  d["in_interval"] = truth.in_interval;
   return findings(d);
 }
 

@@ -18,12 +18,16 @@ TEST(CompareTruth, TakesOffTheMedianAndCountsWhatIsCovered) {
   for (std::size_t i = 0; i < truth.z_nm.size(); ++i)
     truth.z_nm.data()[i] += 5 + static_cast<double>(i % 4) - 1;
   r.deviation_nm = Grid<double>(truth.z_nm.width(), truth.z_nm.height(), 0.75);
+  r.lower_nm = r.upper_nm = r.surface.z_nm;
+  for (double& v : r.lower_nm.data()) v -= 0.2;  // uneven: truths of +0 and +1 are inside
+  for (double& v : r.upper_nm.data()) v += 1.1;
   const TruthReport report = compare_with_truth(r, truth);
   // A quarter each of -4, -5, -6 and -7.
   EXPECT_NEAR(report.offset_nm, -5, 1e-9);
   EXPECT_NEAR(report.rms_nm, std::sqrt(1.5), 0.01);
   EXPECT_NEAR(report.coverage_1, 0.25, 0.01);
   EXPECT_NEAR(report.coverage_2, 0.75, 0.01);
+  EXPECT_NEAR(report.in_interval, 0.5, 0.01);
   ASSERT_FALSE(report.regions.empty());
   for (const RegionReport& region : report.regions)
     if (region.pixels > 100) {
@@ -48,6 +52,10 @@ TEST(CompareTruth, JudgesWallsByTheirPlace) {
       r.surface.z_nm(x, y) = height(truth.x_nm(x) - 4);
     }
   r.deviation_nm = Grid<double>(80, 20, 6.0);  // 3 nm along x at a slope of 2
+  r.lower_nm = r.upper_nm = r.surface.z_nm;
+  // Only walls that fall to the right are as much too high as intervals say.
+  for (double& v : r.lower_nm.data()) v -= 9;
+  for (double& v : r.upper_nm.data()) v += 1;
   const TruthReport report = compare_with_truth(r, truth);
   const RegionReport& edge = report.regions.back();
   ASSERT_EQ(edge.name, "edge");
@@ -56,6 +64,7 @@ TEST(CompareTruth, JudgesWallsByTheirPlace) {
   EXPECT_NEAR(edge.stated_nm, 3, 1e-6);
   EXPECT_EQ(edge.coverage_1, 0);
   EXPECT_EQ(edge.coverage_2, 1);
+  EXPECT_EQ(edge.in_interval, 0.5);
 }
 
 }  // namespace

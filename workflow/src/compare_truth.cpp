@@ -101,13 +101,17 @@ std::vector<RegionReport> regions_of(const Reconstruction& result, const HeightF
     region.name = in.name;
     for (std::size_t i = 0; i < d.less.z_nm.size(); ++i) {
       if (!d.less.valid.data()[i] || !in.pixels.data()[i]) continue;
-      const double off = std::abs(d.less.z_nm.data()[i] - d.middle),
+      const double less = d.less.z_nm.data()[i] - d.middle, off = std::abs(less),
                    deviation = result.deviation_nm.data()[i];
       ++region.pixels;
       region.rms_nm += off * off;
       region.stated_nm += deviation * deviation;
       region.coverage_1 += off <= deviation;
       region.coverage_2 += off <= 2 * deviation;
+      if (result.lower_nm.empty()) continue;
+      const double truth_nm = result.surface.z_nm.data()[i] - less;
+      region.in_interval +=
+          truth_nm >= result.lower_nm.data()[i] && truth_nm <= result.upper_nm.data()[i];
     }
   }
   for (RegionReport& region : regions) {
@@ -116,6 +120,7 @@ std::vector<RegionReport> regions_of(const Reconstruction& result, const HeightF
     region.stated_nm = std::sqrt(region.stated_nm / n);
     region.coverage_1 /= n;
     region.coverage_2 /= n;
+    region.in_interval /= n;
   }
   std::erase_if(regions, [](const RegionReport& r) { return r.pixels == 0; });
   return regions;
@@ -166,6 +171,7 @@ TruthReport compare_with_truth(const Reconstruction& result, const HeightField& 
     report.regions = regions_of(result, there, d);
     report.coverage_1 = report.regions.front().coverage_1;
     report.coverage_2 = report.regions.front().coverage_2;
+    report.in_interval = report.regions.front().in_interval;
     report.regions.erase(report.regions.begin());
     const RegionReport edges = edge_places(result, there, d.middle);
     if (edges.pixels > 0) report.regions.push_back(edges);

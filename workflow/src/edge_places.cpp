@@ -12,7 +12,8 @@ constexpr int farthest_px = 6;
 
 /// Heights along a row or a column.
 struct Line {
-  std::vector<double> truth_nm, surface_nm, deviation_nm;
+  std::vector<double> truth_nm = {}, surface_nm = {}, deviation_nm = {}, lower_nm = {},
+                      upper_nm = {};
   double pitch_nm = 1;
 };
 
@@ -23,6 +24,12 @@ std::optional<double> passes(const std::vector<double>& z, std::size_t i, double
   const double a = z[i] - level_nm, b = z[i + 1] - level_nm;
   if (rising ? !(a < 0 && b >= 0) : !(a >= 0 && b < 0)) return std::nullopt;
   return static_cast<double>(i) + a / (a - b);
+}
+
+double between(const std::vector<double>& z, double place) {
+  const auto i = static_cast<std::size_t>(place);
+  const double share = place - static_cast<double>(i);
+  return i + 1 < z.size() ? (1 - share) * z[i] + share * z[i + 1] : z.back();
 }
 
 void count(double off_nm, double stated_nm, RegionReport& report) {
@@ -53,6 +60,9 @@ void judge_wall(const Line& line, std::size_t begin, std::size_t end, RegionRepo
         ((1 - share) * line.deviation_nm[i] + share * line.deviation_nm[i + 1]) / slope;  // pixels
   }
   count(off * line.pitch_nm, found ? stated * line.pitch_nm : 0, report);
+  if (!line.lower_nm.empty())
+    report.in_interval += between(line.lower_nm, *true_place) <= level &&
+                          between(line.upper_nm, *true_place) >= level;
 }
 
 void judge(const Line& line, RegionReport& report) {
@@ -85,18 +95,22 @@ RegionReport edge_places(const Reconstruction& result, const HeightField& truth,
       line.truth_nm.push_back(truth.z_nm(x, y));
       line.surface_nm.push_back(s.z_nm(x, y) - offset_nm);
       line.deviation_nm.push_back(result.deviation_nm(x, y));
+      if (!result.lower_nm.empty()) {
+        line.lower_nm.push_back(result.lower_nm(x, y) - offset_nm);
+        line.upper_nm.push_back(result.upper_nm(x, y) - offset_nm);
+      }
       return;
     }
     if (line.truth_nm.size() > 1) judge(line, report);
-    line = {{}, {}, {}, line.pitch_nm};
+    line = Line{.pitch_nm = line.pitch_nm};
   };
   for (int y = 0; y < h; ++y) {
-    Line line{{}, {}, {}, s.pitch_x_nm};
+    Line line{.pitch_nm = s.pitch_x_nm};
     for (int x = 0; x < w; ++x) add(line, x, y);
     if (line.truth_nm.size() > 1) judge(line, report);
   }
   for (int x = 0; x < w; ++x) {
-    Line line{{}, {}, {}, s.pitch_y_nm};
+    Line line{.pitch_nm = s.pitch_y_nm};
     for (int y = 0; y < h; ++y) add(line, x, y);
     if (line.truth_nm.size() > 1) judge(line, report);
   }
@@ -106,6 +120,7 @@ RegionReport edge_places(const Reconstruction& result, const HeightField& truth,
   report.stated_nm = std::sqrt(report.stated_nm / n);
   report.coverage_1 /= n;
   report.coverage_2 /= n;
+  report.in_interval /= n;
   return report;
 }
 

@@ -65,6 +65,7 @@ void add_image(const std::string& of, const SemData& sem, const StoredModel& mod
   for (const SemDiscrepancy& part : sem.discrepancy)
     id[prefix + "model error"] +=
         fmt::format("{} {:g} ", hash_of(part.deviation.data()), part.correlation_px);
+  if (sem.guided_deviation > 0) id[prefix + "model error"] += format_exact(sem.guided_deviation);
 }
 
 /// Everything that the states of the reconstruction depend on.

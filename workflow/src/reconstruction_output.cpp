@@ -98,6 +98,10 @@ Image surface_image(const ReconstructSummary& s, const Reconstruction& r, const 
   image.channels.push_back(channel("z_nm", "nm", r.surface.z_nm));
   if (!r.deviation_nm.empty())
     image.channels.push_back(channel("deviation_nm", "nm", r.deviation_nm));
+  if (!r.lower_nm.empty()) {
+    image.channels.push_back(channel("lower_nm", "nm", r.lower_nm));
+    image.channels.push_back(channel("upper_nm", "nm", r.upper_nm));
+  }
   if (!r.data_support.empty())
     image.channels.push_back(channel("data_support", "1", r.data_support));
   if (s.afm)

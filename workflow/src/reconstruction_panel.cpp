@@ -46,7 +46,8 @@ PlotPanel residual_panel(const std::string& title, const PlacedImage& image) {
 
 /// The data along a line across the surface.
 struct Section {
-  std::vector<double> place_um, scan, start, surface, deviation, truth;
+  std::vector<double> place_um, scan, start, surface, truth;
+  std::vector<double> middle, half;  // of the 95 % interval
 };
 
 struct Line {
@@ -83,7 +84,10 @@ Section section_of(const Line& line, const Reconstruction& r, const HeightField*
     if (!r.surface.is_valid(x, y)) continue;
     s.place_um.push_back((line.along_x ? r.surface.x_nm(x) : r.surface.y_nm(y)) / nm_per_um);
     s.surface.push_back(r.surface.z_nm(x, y));
-    if (!r.deviation_nm.empty()) s.deviation.push_back(2 * r.deviation_nm(x, y));
+    if (!r.lower_nm.empty()) {
+      s.middle.push_back(0.5 * (r.lower_nm(x, y) + r.upper_nm(x, y)));
+      s.half.push_back(0.5 * (r.upper_nm(x, y) - r.lower_nm(x, y)));
+    }
     if (r.start.z_nm.size() == r.surface.z_nm.size()) s.start.push_back(r.start.z_nm(x, y));
     if (scan) s.scan.push_back(scan->is_valid(x, y) ? scan->z_nm(x, y) : blank);
     if (truth) s.truth.push_back(truth->is_valid(x, y) ? truth->z_nm(x, y) + offset : blank);
@@ -111,10 +115,10 @@ PlotPanel section_panel(const std::string& title, const std::string& axis, const
   const auto add = [&](PlotSeries line) {
     if (!line.y.empty()) panel.series.push_back(std::move(line));
   };
-  if (!s.deviation.empty()) {
-    PlotSeries band = series("± 2 standard deviations", s, s.surface, 0, false);
+  if (!s.half.empty()) {
+    PlotSeries band = series("95 % interval", s, s.middle, 0, false);
     band.style = PlotStyle::band;
-    band.y_error = s.deviation;
+    band.y_error = s.half;
     add(std::move(band));
   }
   add(series("AFM scan", s, s.scan, 7, false));

@@ -414,13 +414,15 @@ std::string reconstruction_report(const ReconstructJob& job, const ReconstructSu
                           {"offset_nm", t.offset_nm},
                           {"plane_rms_nm", t.plane_rms_nm},
                           {"within_1_deviation", t.coverage_1},
-                          {"within_2_deviations", t.coverage_2}});
+                          {"within_2_deviations", t.coverage_2},
+                          {"within_interval", t.in_interval}});
     for (const RegionReport& region : t.regions)
       json["truth"]["regions"][region.name] = {{"pixels", region.pixels},
                                                {"rms_nm", region.rms_nm},
                                                {"deviation_nm", region.stated_nm},
                                                {"within_1_deviation", region.coverage_1},
-                                               {"within_2_deviations", region.coverage_2}};
+                                               {"within_2_deviations", region.coverage_2},
+                                               {"within_interval", region.in_interval}};
   }
   // Paths need not be UTF-8. Such bytes are replaced, so that the report is not lost.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

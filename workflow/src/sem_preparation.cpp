@@ -80,6 +80,8 @@ SemData sem_at(const ReconstructJob& job, const ReconstructSummary& s, const Pla
               calibration.noise,
               map,
               usual_discrepancy(image, job.model_error)};
+  // On rough ground slopes are the surface itself, and an error that follows them hides it.
+  if (!(s.afm && s.afm->rough_ground)) sem.guided_deviation = job.model_error * contrast_of(image);
   if (job.line_jitter_px > 0) sem.row_jitter = line_jitter(image, job.line_jitter_px);
   return sem;
 }

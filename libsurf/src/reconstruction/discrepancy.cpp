@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "discrepancy.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
@@ -41,6 +42,8 @@ struct Discrepancy::Layout {
   std::vector<Part> parts;
   Grid<double> row_jitter;
   int first_row = 0;  // number of the rows' first coefficient
+  int local = 0;      // number of coefficients of splines and rows: those before the fields'
+  std::vector<Grid<double>> fields;
   bool has_rows() const { return !row_jitter.empty(); }
   Matrix pattern;  // lower triangle
 
@@ -98,6 +101,10 @@ struct Discrepancy::Layout {
     }
     for (int y = 0; has_rows() && y < height; ++y)
       for (int x = 0; x < width; ++x) out(x, y) += c(first_row + y) * row_jitter(x, y);
+    for (std::size_t k = 0; k < fields.size(); ++k) {
+      const double by = c(local + static_cast<int>(k));
+      for (std::size_t i = 0; i < out.size(); ++i) out.data()[i] += by * fields[k].data()[i];
+    }
     return out;
   }
 
@@ -123,11 +130,17 @@ struct Discrepancy::Layout {
     }
     for (int y = 0; has_rows() && y < height; ++y)
       for (int x = 0; x < width; ++x) out(first_row + y) += row_jitter(x, y) * v(x, y);
+    for (std::size_t k = 0; k < fields.size(); ++k) {
+      double sum = 0;
+      for (std::size_t i = 0; i < v.size(); ++i) sum += fields[k].data()[i] * v.data()[i];
+      out(local + static_cast<int>(k)) = sum;
+    }
     return out;
   }
 };
 
-Discrepancy::Discrepancy(const std::vector<SemDiscrepancy>& parts, const Grid<double>& row_jitter) {
+Discrepancy::Discrepancy(const std::vector<SemDiscrepancy>& parts, const Grid<double>& row_jitter,
+                         const std::vector<Grid<double>>& fields) {
   auto layout = std::make_shared<Layout>();
   layout->row_jitter = row_jitter;
   const Grid<double>& first = parts.empty() ? row_jitter : parts.front().deviation;
@@ -168,13 +181,46 @@ Discrepancy::Discrepancy(const std::vector<SemDiscrepancy>& parts, const Grid<do
   layout->pattern.resize(layout->coefficients, layout->coefficients);
   layout->pattern.setFromTriplets(entries.begin(), entries.end());
   layout->pattern.makeCompressed();
+  layout->local = layout->coefficients;
+  layout->fields = fields;
+  layout->coefficients += static_cast<int>(fields.size());
   layout_ = std::move(layout);
 }
 
 Discrepancy::~Discrepancy() = default;
 
 struct Discrepancy::Factor::Solver {
-  Eigen::SimplicialLLT<Matrix, Eigen::Lower> factor;
+  Eigen::SimplicialLLT<Matrix, Eigen::Lower> factor;  // of splines and rows
+  // Fields have something in common with all others. So they are eliminated last: `across` is what
+  // they have in common, `solved` the same solved by `factor`, `rest` what is left of themselves.
+  Eigen::MatrixXd across, solved;
+  Eigen::LLT<Eigen::MatrixXd> rest;
+
+  void add_fields(const Layout& layout, const Grid<double>& weight) {
+    const int local = layout.local, count = static_cast<int>(layout.fields.size());
+    if (count == 0) return;
+    across.resize(local, count), solved.resize(local, count);
+    Eigen::MatrixXd own = Eigen::MatrixXd::Identity(count, count);
+    for (int k = 0; k < count; ++k) {
+      Grid<double> weighted = layout.fields[static_cast<std::size_t>(k)];
+      for (std::size_t i = 0; i < weighted.size(); ++i) weighted.data()[i] *= weight.data()[i];
+      const Vector all = layout.transpose(weighted);
+      across.col(k) = all.head(local);
+      own.col(k) += all.tail(count);
+      solved.col(k) = factor.solve(across.col(k));
+    }
+    rest.compute(own - across.transpose() * solved);
+  }
+
+  Vector solve(const Vector& right) const {
+    if (across.size() == 0) return factor.solve(right);
+    const Eigen::Index local = across.rows(), count = across.cols();
+    Vector out(local + count);
+    const Vector first = factor.solve(right.head(local));
+    out.tail(count) = rest.solve(right.tail(count) - across.transpose() * first);
+    out.head(local) = first - solved * out.tail(count);
+    return out;
+  }
 
   /// What rows have in common with themselves and with the splines that reach into them.
   static void add_rows(const Layout& layout, const Grid<double>& weight, Matrix& matrix) {
@@ -225,11 +271,12 @@ Discrepancy::Factor::Factor(std::shared_ptr<const Layout> layout, const Grid<dou
           matrix.coeffRef(numbers[i], numbers[k]) += sums[i * count + k];
   });
   if (layout_->has_rows()) Solver::add_rows(*layout_, weight_, matrix);
-  for (int k = 0; k < layout_->coefficients; ++k) matrix.coeffRef(k, k) += 1;
+  for (int k = 0; k < layout_->local; ++k) matrix.coeffRef(k, k) += 1;
   solver_->factor.compute(matrix);
   if (solver_->factor.info() != Eigen::Success)
     throw InvalidInput("SEM image", "its discrepancy cannot be solved for",
                        "Check `reconstruction.sem_noise`");
+  solver_->add_fields(*layout_, weight_);
 }
 
 Discrepancy::Factor::~Factor() = default;
@@ -241,14 +288,14 @@ std::shared_ptr<const Discrepancy::Factor> Discrepancy::factor(const Grid<double
 Discrepancy::Factor::Fit Discrepancy::Factor::fit(const Grid<double>& residual) const {
   Grid<double> weighted = residual;
   for (std::size_t i = 0; i < weighted.size(); ++i) weighted.data()[i] *= weight_.data()[i];
-  const Vector c = solver_->factor.solve(layout_->transpose(weighted));
+  const Vector c = solver_->solve(layout_->transpose(weighted));
   return {layout_->field(c), 0.5 * c.squaredNorm(), {c.data(), c.data() + c.size()}};
 }
 
 Grid<double> Discrepancy::Factor::spread(const Grid<double>& v, const Fit& fit) const {
-  Grid<double> out = layout_->field(solver_->factor.solve(
-      layout_->transpose(v) -
-      Eigen::Map<const Vector>(fit.coefficients.data(), layout_->coefficients)));
+  Grid<double> out = layout_->field(
+      solver_->solve(layout_->transpose(v) -
+                     Eigen::Map<const Vector>(fit.coefficients.data(), layout_->coefficients)));
   for (std::size_t i = 0; i < out.size(); ++i) out.data()[i] *= weight_.data()[i];
   return out;
 }
@@ -256,12 +303,15 @@ Grid<double> Discrepancy::Factor::spread(const Grid<double>& v, const Fit& fit) 
 Grid<double> Discrepancy::Factor::precision(const Grid<double>& v) const {
   Grid<double> out = v;
   for (std::size_t i = 0; i < out.size(); ++i) out.data()[i] *= weight_.data()[i];
-  const Grid<double> field = layout_->field(solver_->factor.solve(layout_->transpose(out)));
+  const Grid<double> field = layout_->field(solver_->solve(layout_->transpose(out)));
   for (std::size_t i = 0; i < out.size(); ++i) out.data()[i] -= weight_.data()[i] * field.data()[i];
   return out;
 }
 
-int Discrepancy::Factor::rows() const { return layout_->has_rows() ? layout_->height : 0; }
+std::vector<double> Discrepancy::Factor::rows_of(const Fit& fit) const {
+  const auto first = fit.coefficients.begin() + layout_->first_row;
+  return {first, first + (layout_->has_rows() ? layout_->height : 0)};
+}
 
 Grid<double> Discrepancy::Factor::draw(std::uint64_t seed, std::uint64_t stream) const {
   NormalNumbers normal(seed, stream);

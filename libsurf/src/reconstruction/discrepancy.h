@@ -11,7 +11,8 @@
 namespace surf::reconstruction {
 
 /// What a model of the SEM image may be off by: sums of quadratic B-splines on wide grids, whose
-/// coefficients are independent and normal, times a standard deviation at each pixel. It is
+/// coefficients are independent and normal, times a standard deviation at each pixel, and given
+/// fields over the whole image, each times a standard normal coefficient. It is
 /// eliminated from the fit: for any simulated image the most likely discrepancy follows from the
 /// residual, and the likelihood that is left has the noise's covariance and the discrepancy's.
 class Discrepancy {
@@ -20,7 +21,8 @@ class Discrepancy {
   /// between them. Spacings of the grids are the parts' correlation lengths, rounded so that each
   /// is a multiple of the first. Parts rise in length.
   explicit Discrepancy(const std::vector<SemDiscrepancy>& parts,
-                       const Grid<double>& row_jitter = {});
+                       const Grid<double>& row_jitter = {},
+                       const std::vector<Grid<double>>& fields = {});
   ~Discrepancy();
 
   /// For pixels of precisions `weight` (1 / variance of the noise; 0: does not count).
@@ -40,7 +42,7 @@ class Discrepancy::Factor {
   struct Fit {
     Grid<double> field;                ///< the most likely discrepancy, in the image's unit
     double penalty = 0;                ///< minus the logarithm of its prior, without constants
-    std::vector<double> coefficients;  ///< of splines, then of rows
+    std::vector<double> coefficients;  ///< of splines, then of rows, then of fields
   };
   Fit fit(const Grid<double>& residual) const;
   /// By how much what is left of a residual and its penalty rise with each pixel of the residual
@@ -49,7 +51,7 @@ class Discrepancy::Factor {
   Grid<double> spread(const Grid<double>& v, const Fit& fit) const;
   /// Q v, where Q is the inverse of the covariance of noise and discrepancy.
   Grid<double> precision(const Grid<double>& v) const;
-  int rows() const;  ///< number of coefficients of rows
+  std::vector<double> rows_of(const Fit& fit) const;  ///< the coefficients of rows
   /// A draw of the discrepancy by its prior.
   Grid<double> draw(std::uint64_t seed, std::uint64_t stream) const;
 

@@ -101,6 +101,19 @@ Step solve(const Objective& o, const Product& product, const Preconditioner& m, 
       o, product, [&](const Step& r) { return m.solve(r); }, right, reduction, watch);
 }
 
+/// Solves A x = r among the unknowns that are not held.
+Step solve_held(const Objective& o, const Unknowns& at, const Curvature& a, const Held& which,
+                const Step& right, const Watch& watch) {
+  const auto held = [&](Step v) {
+    if (which.tip) v.tip = {};
+    if (which.spot) v.mixture[2] = 0;
+    return v;
+  };
+  return solve(
+      o, [&](const Step& v) { return held(o.product(at, a.state, v, &a.near)); },
+      [&](const Step& r) { return held(a.preconditioner->solve(r)); }, held(right), 0.05, watch);
+}
+
 }  // namespace
 
 Curvature expected_curvature(const Objective& o, const Unknowns& at, std::uint64_t seed,
@@ -125,24 +138,18 @@ Curvature expected_curvature(const Objective& o, const Unknowns& at, std::uint64
   return a;
 }
 
-Step prior_bias(const Objective& o, const Unknowns& at, const Curvature& a, const Watch& watch) {
-  const auto product = [&](const Step& v) { return o.product(at, a.state, v, &a.near); };
+Step prior_bias(const Objective& o, const Unknowns& at, const Curvature& a, const Held& held,
+                const Watch& watch) {
   Step pull = o.zero();
   o.prior.evaluate(at.z_nm, &pull.z_nm, nullptr);
-  return solve(o, product, *a.preconditioner, pull, 0.05, watch);
+  return solve_held(o, at, a, held, pull, watch);
 }
 
-Step change_by_tip(const Objective& o, const Unknowns& at, const Curvature& a, const Watch& watch) {
+Step change_by_tip(const Objective& o, const Unknowns& at, const Curvature& a, const Held& held,
+                   const Watch& watch) {
   Step tip = o.zero();
   tip.tip = at.tip;
-  const auto held = [](Step v) {
-    v.tip = {};
-    return v;
-  };
-  const auto product = [&](const Step& v) { return held(o.product(at, a.state, v, &a.near)); };
-  return solve(
-      o, product, [&](const Step& r) { return held(a.preconditioner->solve(r)); }, product(tip),
-      0.05, watch);
+  return solve_held(o, at, a, {true, held.spot}, o.product(at, a.state, tip, &a.near), watch);
 }
 
 std::vector<double> deviations_of(const Objective& o, const Unknowns& at, const Curvature& a,
@@ -157,8 +164,8 @@ std::vector<double> deviations_of(const Objective& o, const Unknowns& at, const 
   return out;
 }
 
-Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint64_t seed,
-                    int threads, Precision precision, const Watch& watch) {
+Posterior posterior(const Objective& o, const Unknowns& at, const Held& held, int draws,
+                    std::uint64_t seed, int threads, Precision precision, const Watch& watch) {
   const Curvature a = expected_curvature(o, at, seed, threads, precision, watch);
   const Objective::State& state = a.state;
   const Preconditioner& m = *a.preconditioner;
@@ -175,11 +182,11 @@ Posterior posterior(const Objective& o, const Unknowns& at, int draws, std::uint
   }
   const GaussianBasis around(around_px, threads);
   const Grid<double> mean = around.sum(drawn), expected = around.sum(without_sem);
-  Grid<double> bias = prior_bias(o, at, a, watch).z_nm;
+  Grid<double> bias = prior_bias(o, at, a, held, watch).z_nm;
   for (double& b : bias.data()) b *= b;
   bias = around.sum(bias);
   if (o.fit_tip) {
-    Grid<double> by_tip = change_by_tip(o, at, a, watch).z_nm;
+    Grid<double> by_tip = change_by_tip(o, at, a, held, watch).z_nm;
     for (double& v : by_tip.data()) v *= v;
     by_tip = around.sum(by_tip);
     for (std::size_t i = 0; i < bias.size(); ++i) bias.data()[i] += by_tip.data()[i];

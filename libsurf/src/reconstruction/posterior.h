@@ -28,17 +28,22 @@ struct Curvature {
 Curvature expected_curvature(const Objective& objective, const Unknowns& at, std::uint64_t seed,
                              int threads, Precision precision, const Watch& watch);
 
-/// The prior's bias, which draws of noise do not contain: the displacement of the unknowns if the
-/// prior of the surface were removed, to first order.
+/// Unknowns of the posterior that the fit did not move.
+struct Held {
+  bool tip = false, spot = false;
+};
+
+/// The prior's bias, which draws of noise do not contain: the displacement of the unknowns that are
+/// not held if the prior of the surface were removed, to first order.
 Step prior_bias(const Objective& objective, const Unknowns& at, const Curvature& curvature,
-                const Watch& watch);
+                const Held& held, const Watch& watch);
 
 /// What all else changes by, to first order, if the tip is put back to what it was given as: the
 /// tip's fit and the search before it are two estimates. Rounded edges of the surface and a tip
 /// that is too dull there compensate each other in the scan. So fitted tips are off by far more
 /// than noise moves them.
 Step change_by_tip(const Objective& objective, const Unknowns& at, const Curvature& curvature,
-                   const Watch& watch);
+                   const Held& held, const Watch& watch);
 
 /// The posterior standard deviation of each linear function of the unknowns, which is given by its
 /// derivatives c. Its square is c.A^-1 c, which costs a solution of the linear system, and the
@@ -58,8 +63,11 @@ std::vector<double> deviations_of(const Objective& objective, const Unknowns& at
 /// small deviations, because that surface is smoother than any draw. The bias by the prior is added
 /// in squares; where edges are rounder than the prior expects, it is the largest part. So is
 /// `change_by_tip`, where the tip is fitted.
-Posterior posterior(const Objective& objective, const Unknowns& at, int draws, std::uint64_t seed,
-                    int threads, Precision precision, const Watch& watch);
+///
+/// `held`: unknowns that draws move, but the fit did not, so that they do not take part in its
+/// biases. They have their priors.
+Posterior posterior(const Objective& objective, const Unknowns& at, const Held& held, int draws,
+                    std::uint64_t seed, int threads, Precision precision, const Watch& watch);
 
 /// One draw of the error, by noise and the prior's bias, of the heights that one linear step at the
 /// truth `at` gives.

@@ -7,11 +7,12 @@
 #include <fmt/format.h>
 
 #include "check_inputs.h"
-#include "common_doubts.h"
 #include "depth_doubt.h"
 #include "descent.h"
 #include "gauss_newton.h"
 #include "gaussian_basis.h"
+#include "height_intervals.h"
+#include "image_guides.h"
 #include "initial_surface.h"
 #include "posterior.h"
 #include "residual_report.h"
@@ -30,8 +31,6 @@ constexpr double coarsely = 20;
 // white.
 constexpr double rough_looseness = 3;
 constexpr double worth_loosening = 1.3;
-// A model of pixels places a wall to this fraction of one.
-constexpr double edge_doubt_px = 0.15;
 constexpr double soft_px = 1;
 constexpr int margin_px = 12;  // of the surface around the SEM image, and of a view's heights
 
@@ -167,6 +166,7 @@ class Work {
     if (newton) {
       if (first) at_.z_nm = GaussianBasis(1.5, options_.threads).sum(at_.z_nm);
       set_prior(curvature_ * sigma_px * sigma_px);
+      if (last) look_around();
       fit_few(objective_, at_, watch);
       const double settled = o.tolerance;
       const int most = o.iterations;
@@ -180,6 +180,7 @@ class Work {
       if (last) {
         while (d.iterations < most && options_.curvature_prior_per_nm == 0 && loosen_prior())
           go_on(0.5, 0.5);
+        look_around();
         o.tolerance = settled;
         go_on(0.5, 1);
       }
@@ -207,6 +208,17 @@ class Work {
     if (s.sem) r.sem_residual = judge(sem_white(*objective_.sem, *s.sem), objective_.sem->used());
     converged_ = d.ended == "converged";
     reports_.push_back(r);
+  }
+
+  /// Renews what the discrepancy follows, at the current surface.
+  void look_around() {
+    if (!afm_ || !sem_ || !(sem_->guided_deviation > 0)) return;
+    const Grid<double> simulated = objective_.sem->evaluate(at_.z_nm, at_.mixture).simulated;
+    std::vector<Grid<double>> guides = image_guides(at_.z_nm, objective_.frame.pitch_nm, simulated,
+                                                    objective_.sem->used(), options_.threads);
+    const double each =
+        sem_->guided_deviation / std::sqrt(std::max<double>(1, static_cast<double>(guides.size())));
+    objective_.sem->follow(std::move(guides), each);
   }
 
   void set_prior(double curvature_per_nm) {
@@ -312,7 +324,6 @@ class Work {
 
   CommonDoubts common_doubts() const {
     CommonDoubts doubts;
-    doubts.seed = options_.seed;
     if (afm_) {
       const HeightField& scan = afm_->image;
       doubts.level = afm_->level_doubt;
@@ -336,6 +347,8 @@ class Work {
     out.blur_px2 = last.blur_px2;
     out.film_nm = last.film_nm;
     out.scan_drift_px = at_.drift_px;
+    // So that a result follows from its state alone.
+    if (options_.method == ReconstructionMethod::gauss_newton) look_around();
     const Objective::State s = objective_.evaluate(at_);
     if (s.afm) {
       out.tip = objective_.afm->tip(at_.tip);
@@ -360,15 +373,23 @@ class Work {
     for (std::size_t v = 0; v < objective_.views.size(); ++v)
       out.views.push_back(view_result(objective_.views[v], s.views[v], at_.views[v]));
     if (options_.uncertainty) {
+      // No image states its spot: it is unknown to the posterior also where the fit takes the
+      // model's.
+      const bool fitted_spot = objective_.fit_blur;
+      objective_.fit_blur = sem_ != nullptr;
       const Posterior p =
-          posterior(objective_, at_, options_.probes, options_.seed, options_.threads, precision(),
-                    options_.watch.part(share_of_scales, 1));
-      out.deviation_nm = cut(p.deviation_nm);
+          posterior(objective_, at_, {.spot = !fitted_spot}, options_.probes, options_.seed,
+                    options_.threads, precision(), options_.watch.part(share_of_scales, 1));
+      Grid<double> linear = cut(p.deviation_nm);
       const Grid<double> deeper = cut(depth_doubt(objective_, at_, s, options_.threads));
       for (std::size_t i = 0; i < deeper.size(); ++i)
-        out.deviation_nm.data()[i] = std::hypot(out.deviation_nm.data()[i], deeper.data()[i]);
-      add(common_doubts(), out.surface, cut(GaussianBasis(soft_px, options_.threads).sum(at_.z_nm)),
-          at_.surface_to_afm, out.deviation_nm);
+        linear.data()[i] = std::hypot(linear.data()[i], deeper.data()[i]);
+      HeightIntervals intervals = height_intervals(
+          common_doubts(), out.surface, cut(GaussianBasis(soft_px, options_.threads).sum(at_.z_nm)),
+          at_.surface_to_afm, linear, options_.threads);
+      out.deviation_nm = std::move(intervals.deviation_nm);
+      out.lower_nm = std::move(intervals.lower_nm);
+      out.upper_nm = std::move(intervals.upper_nm);
       out.data_support = cut(p.data_support);
     }
     return out;

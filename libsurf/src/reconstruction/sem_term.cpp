@@ -36,16 +36,22 @@ SemTerm::SemTerm(const SemData& data, const SurfaceFrame& frame, int left, int b
       for (int x = 0; x < given.width(); ++x) out(x + left, y + below) = given(x, y);
     return out;
   };
-  std::vector<SemDiscrepancy> parts;
   for (const SemDiscrepancy& given : data.discrepancy)
-    parts.push_back({placed(given.deviation), given.correlation_px});
-  discrepancy_.emplace(parts, data.row_jitter.empty() ? Grid<double>() : placed(data.row_jitter));
+    parts_.push_back({placed(given.deviation), given.correlation_px});
+  if (!data.row_jitter.empty()) row_jitter_ = placed(data.row_jitter);
   // By the image itself, so that one factor does for all surfaces.
   const Grid<double> soft = GaussianBasis(soft_px, threads).sum(image_);
-  Grid<double> weight(frame.width, frame.height);
-  for (std::size_t i = 0; i < weight.size(); ++i)
-    if (used_.data()[i]) weight.data()[i] = 1 / noise_.variance(soft.data()[i]);
-  factor_ = discrepancy_->factor(weight);
+  weight_ = Grid<double>(frame.width, frame.height);
+  for (std::size_t i = 0; i < weight_.size(); ++i)
+    if (used_.data()[i]) weight_.data()[i] = 1 / noise_.variance(soft.data()[i]);
+  factor_ = Discrepancy(parts_, row_jitter_).factor(weight_);
+}
+
+void SemTerm::follow(std::vector<Grid<double>> fields, double deviation) {
+  if (!factor_) return;
+  for (Grid<double>& field : fields)
+    for (double& v : field.data()) v *= deviation;
+  factor_ = Discrepancy(parts_, row_jitter_, fields).factor(weight_);
 }
 
 std::vector<double> SemTerm::gains_of(const Mixture& mixture) const {
@@ -74,7 +80,7 @@ SemTerm::State SemTerm::evaluate(const Grid<double>& z, const Mixture& mixture) 
   s.sharp = mixed(s.linear->images(), gains_of(mixture));
   s.simulated = blurred(s.sharp, mixture.blur_px2);
   for (double& v : s.simulated.data()) v += mixture.offset;
-  if (!discrepancy_) {
+  if (!factor_) {
     s.value = -log_likelihood(image_, s.simulated, noise_, used_, &s.pull, &s.information);
     for (double& p : s.pull.data()) p = -p;
     return s;
@@ -94,8 +100,8 @@ SemTerm::State SemTerm::evaluate(const Grid<double>& z, const Mixture& mixture) 
   // The fit follows the simulated pixels.
   const Grid<double> through = factor_->spread(left, fit);
   for (std::size_t i = 0; i < through.size(); ++i) s.pull.data()[i] += through.data()[i];
+  s.row_jitter = factor_->rows_of(fit);
   s.discrepancy = std::move(fit.field);
-  s.row_jitter.assign(fit.coefficients.end() - factor_->rows(), fit.coefficients.end());
   return s;
 }
 

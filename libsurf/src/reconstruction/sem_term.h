@@ -82,6 +82,9 @@ class SemTerm {
   /// A draw of `precision`: normal, with that covariance.
   Grid<double> draw_precision(const State& state, std::uint64_t seed) const;
 
+  /// The discrepancy follows these fields, too, each times a coefficient of this deviation.
+  void follow(std::vector<Grid<double>> fields, double deviation);
+
   std::size_t channels() const { return channels_; }
   bool has_film() const { return film_; }
   const Grid<double>& image() const { return image_; }  ///< on the surface's samples
@@ -105,8 +108,9 @@ class SemTerm {
   Grid<double> image_;
   Mask used_;
   std::int64_t used_pixels_ = 0;
-  std::optional<Discrepancy> discrepancy_;
-  std::shared_ptr<const Discrepancy::Factor> factor_;
+  std::vector<SemDiscrepancy> parts_;  // of the discrepancy, on the surface's samples
+  Grid<double> row_jitter_, weight_;
+  std::shared_ptr<const Discrepancy::Factor> factor_;  // null: there is no discrepancy
 };
 
 }  // namespace surf::reconstruction

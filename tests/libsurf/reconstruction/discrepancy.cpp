@@ -19,6 +19,7 @@ double normal(RandomStream& random) {
 struct Case {
   std::vector<SemDiscrepancy> parts;
   Grid<double> row_jitter{34, 23};
+  std::vector<Grid<double>> fields{{34, 23}, {34, 23}};
   Grid<double> weight{34, 23};
 
   Case() {
@@ -32,6 +33,8 @@ struct Case {
         weight(x, y) = (x + y) % 9 == 0 ? 0 : 1 / (0.5 + random.uniform());
       }
     for (double& v : row_jitter.data()) v = 3 * normal(random);
+    for (Grid<double>& field : fields)
+      for (double& v : field.data()) v = 1 + 2 * normal(random);
   }
 };
 
@@ -44,7 +47,7 @@ double dot(const Grid<double>& a, const Grid<double>& b) {
 // For noise and discrepancy as described, r.Q r is chi-squared with as many degrees as pixels.
 TEST(Discrepancy, PrecisionIsTheInverseOfTheCovariance) {
   const Case c;
-  const Discrepancy discrepancy(c.parts, c.row_jitter);
+  const Discrepancy discrepancy(c.parts, c.row_jitter, c.fields);
   const auto factor = discrepancy.factor(c.weight);
   double pixels = 0, sum = 0;
   for (const double w : c.weight.data()) pixels += w > 0;
@@ -62,7 +65,7 @@ TEST(Discrepancy, PrecisionIsTheInverseOfTheCovariance) {
 
 TEST(Discrepancy, TheLikeliestOneLeavesWhatThePrecisionSays) {
   const Case c;
-  const Discrepancy discrepancy(c.parts, c.row_jitter);
+  const Discrepancy discrepancy(c.parts, c.row_jitter, c.fields);
   const auto factor = discrepancy.factor(c.weight);
   RandomStream random(2, 0, 0);
   Grid<double> r(34, 23);
@@ -80,16 +83,37 @@ TEST(Discrepancy, TheLikeliestOneLeavesWhatThePrecisionSays) {
   for (const double s : none.data()) EXPECT_NEAR(s, 0, 1e-9);
 }
 
-TEST(Discrepancy, FindsWhatRowsAreDisplacedByWithoutAnyOtherDiscrepancy) {
+TEST(Discrepancy, FindsRowsAndFieldsWithoutAnyOtherDiscrepancy) {
   const Case c;
-  const auto factor = Discrepancy({}, c.row_jitter).factor(Grid<double>(34, 23, 1e6));
+  const auto factor = Discrepancy({}, c.row_jitter, c.fields).factor(Grid<double>(34, 23, 1e6));
   Grid<double> left(34, 23);
   for (int x = 0; x < 34; ++x) left(x, 7) = 1.5 * c.row_jitter(x, 7);
+  for (std::size_t i = 0; i < left.size(); ++i) left.data()[i] -= 0.7 * c.fields[1].data()[i];
   const Discrepancy::Factor::Fit fit = factor->fit(left);
-  ASSERT_EQ(fit.coefficients.size(), 23u);
-  EXPECT_EQ(factor->rows(), 23);
-  EXPECT_NEAR(fit.coefficients[7], 1.5, 1e-4);
-  EXPECT_NEAR(fit.coefficients[6], 0, 1e-4);
+  const std::vector<double> rows = factor->rows_of(fit);
+  ASSERT_EQ(rows.size(), 23u);
+  ASSERT_EQ(fit.coefficients.size(), 25u);
+  EXPECT_NEAR(rows[7], 1.5, 1e-4);
+  EXPECT_NEAR(rows[6], 0, 1e-4);
+  EXPECT_NEAR(fit.coefficients[23], 0, 1e-4);
+  EXPECT_NEAR(fit.coefficients[24], -0.7, 1e-4);
+}
+
+TEST(Discrepancy, WhatFollowsAFieldIsForetoldWhereNothingIsSeen) {
+  const Case c;
+  Grid<double> weight = c.weight, left = c.fields[0];
+  for (int y = 8; y < 16; ++y)
+    for (int x = 8; x < 16; ++x) weight(x, y) = 0;
+  for (double& v : left.data()) v *= -1.3;
+  const auto foretold = [&](const std::vector<Grid<double>>& fields) {
+    const Grid<double> field = Discrepancy(c.parts, {}, fields).factor(weight)->fit(left).field;
+    double off = 0;
+    for (int y = 10; y < 14; ++y)
+      for (int x = 10; x < 14; ++x) off += std::pow(field(x, y) - left(x, y), 2) / 16;
+    return std::sqrt(off);
+  };
+  EXPECT_GT(foretold({}), 2);
+  EXPECT_LT(foretold(c.fields), 0.3);
 }
 
 TEST(LineJitter, IsTheSlopeAlongRows) {

@@ -4,8 +4,10 @@
 
 #include <cmath>
 
-#include "reconstruction/common_doubts.h"
+#include "afm/normal_numbers.h"
+#include "core/cubic_sample.h"
 #include "reconstruction/depth_doubt.h"
+#include "reconstruction/height_intervals.h"
 #include "reconstruction/initial_surface.h"
 #include "small_scene.h"
 
@@ -14,16 +16,23 @@ namespace {
 
 using namespace reconstruction;
 
-TEST(CommonDoubts, AnUncertainPlaceReachesPlateausAndNoLevelGround) {
+HeightField step() {
   HeightField surface;
   surface.pitch_x_nm = surface.pitch_y_nm = 10;
   surface.z_nm = Grid<double>(80, 40);
   for (int y = 0; y < 40; ++y)
     for (int x = 60; x < 80; ++x) surface.z_nm(x, y) = 50;
+  return surface;
+}
+
+HeightIntervals intervals_of(const HeightField& surface, const CommonDoubts& doubts) {
+  return height_intervals(doubts, surface, surface.z_nm, Affine{}, Grid<double>(80, 40, 1.0), 1);
+}
+
+TEST(HeightIntervals, AnUncertainPlaceReachesPlateausAndNoLevelGround) {
+  const HeightField surface = step();
   const auto added = [&](const CommonDoubts& doubts) {
-    Grid<double> deviation(80, 40, 1.0);
-    add(doubts, surface, surface.z_nm, Affine{}, deviation);
-    return deviation;
+    return intervals_of(surface, doubts).deviation_nm;
   };
   CommonDoubts place;
   place.place = {16, 16, 0};
@@ -38,13 +47,61 @@ TEST(CommonDoubts, AnUncertainPlaceReachesPlateausAndNoLevelGround) {
   EXPECT_GT(added(along)(57, 20), 15);
   CommonDoubts edge;
   edge.edge_px = 0.15;
-  EXPECT_EQ(added(edge)(57, 20), 1);
-  EXPECT_NEAR(added(edge)(60, 20), std::hypot(1, 0.15 * 25), 1e-9);
+  EXPECT_NEAR(added(edge)(50, 20), 1, 1e-9);
+  HeightField ramp = surface;
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 80; ++x) ramp.z_nm(x, y) = 25 * x;
+  EXPECT_NEAR(intervals_of(ramp, edge).deviation_nm(60, 20), std::hypot(1, 0.15 * 25), 1e-9);
   CommonDoubts tilt;
   tilt.level = {0.01, 0};
   tilt.middle = {400, 0};
   EXPECT_NEAR(added(tilt)(70, 20), std::hypot(1, 3), 1e-9);
   EXPECT_NEAR(added(tilt)(40, 20), 1, 1e-9);
+}
+
+TEST(HeightIntervals, DisplacedWallsStayBetweenGroundAndPlateau) {
+  const HeightField surface = step();
+  CommonDoubts place;
+  place.place = {16, 16, 0};
+  const HeightIntervals i = intervals_of(surface, place);
+  EXPECT_NEAR(i.lower_nm(20, 20), -1.96, 1e-6);
+  EXPECT_NEAR(i.upper_nm(20, 20), 1.96, 1e-6);
+  for (int x = 57; x < 64; ++x) {
+    EXPECT_GT(i.lower_nm(x, 20), -6) << x;  // the cubic between samples overshoots by 3.5 nm
+    EXPECT_LT(i.upper_nm(x, 20), 56) << x;
+    // A normal distribution of this deviation would reach beyond both.
+    EXPECT_GT(4 * i.deviation_nm(x, 20), i.upper_nm(x, 20) - i.lower_nm(x, 20)) << x;
+  }
+  EXPECT_GT(i.upper_nm(57, 20), 45);  // either may be there
+  EXPECT_LT(i.lower_nm(62, 20), 5);
+  EXPECT_EQ(height_intervals(place, surface, surface.z_nm, Affine{}, Grid<double>(80, 40, 1.0), 3)
+                .upper_nm,
+            i.upper_nm);
+}
+
+TEST(HeightIntervals, HoldNinetyFivePercentOfDraws) {
+  HeightField surface = step();
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 80; ++x) surface.z_nm(x, y) = 40 * std::exp(-std::pow((x - 40) / 6.0, 2));
+  CommonDoubts doubts;
+  doubts.place = {4, 1, 0.5};
+  doubts.edge_px = 0.2;
+  doubts.level = {0.002, 0};
+  const HeightIntervals i = intervals_of(surface, doubts);
+  NormalNumbers normal(7, 1);
+  constexpr int draws = 4000;
+  for (const int x : {30, 34, 37, 40, 45}) {
+    double inside = 0;
+    for (int d = 0; d < draws; ++d) {
+      const double first = normal();
+      const double by_x = 2 * first + 0.2 * normal(),
+                   by_y = 0.25 * first + std::sqrt(1 - 0.0625) * normal() + 0.2 * normal();
+      const CubicSample there(x + by_x, 20 + by_y, 80, 40);
+      const double z = there.value(surface.z_nm) + normal() + 0.002 * 10 * x * normal();
+      inside += z >= i.lower_nm(x, 20) && z <= i.upper_nm(x, 20);
+    }
+    EXPECT_NEAR(inside / draws, 0.95, 0.02) << x;  // 64 draws know it to 1 %
+  }
 }
 
 /// Ground with a trench that the tip does not enter.

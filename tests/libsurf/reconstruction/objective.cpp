@@ -8,6 +8,7 @@
 
 #include "afm/normal_numbers.h"
 #include "reconstruction/gaussian_basis.h"
+#include "reconstruction/image_guides.h"
 #include "reconstruction/initial_surface.h"
 #include "reconstruction/posterior.h"
 #include "reconstruction/preconditioner.h"
@@ -92,8 +93,12 @@ TEST(Objective, GradientHoldsWithADiscrepancy) {
   scene.sem.film = some_film;
   scene.sem.discrepancy = usual_discrepancy(scene.sem.image, 0.3);
 
-  const Objective o = make_objective(scene, Images::sem);
+  Objective o = make_objective(scene, Images::sem);
   const Unknowns at = start_at(scene, o);
+  const double without = o.evaluate(at).sem_value;
+  o.sem->follow(
+      image_guides(at.z_nm, o.frame.pitch_nm, o.evaluate(at).sem->simulated, o.sem->used(), 1), 20);
+  EXPECT_LT(o.evaluate(at).sem_value, without);  // it may explain more
   for (const std::uint64_t seed : {1, 2, 3}) expect_gradient(o, at, random_step(o, seed), 3e-3);
   for (int k = 0; k < mixture_numbers; ++k) {
     Step s = o.zero();
@@ -307,10 +312,10 @@ TEST(Posterior, DeviationsOfBothPrecisionsAgree) {
   const test::SmallScene scene;
   const Objective o = make_objective(scene, Images::both);
   const Unknowns at = start_at(scene, o);
-  const Grid<double> a = posterior(o, at, 6, 1, 1, Precision::single_where_it_holds, {})
+  const Grid<double> a = posterior(o, at, {}, 6, 1, 1, Precision::single_where_it_holds, {})
                              .deviation_nm,
-                     b = posterior(o, at, 6, 1, 1, Precision::double_always, {}).deviation_nm;
-  EXPECT_EQ(posterior(o, at, 6, 1, 3, Precision::single_where_it_holds, {}).deviation_nm, a);
+                     b = posterior(o, at, {}, 6, 1, 1, Precision::double_always, {}).deviation_nm;
+  EXPECT_EQ(posterior(o, at, {}, 6, 1, 3, Precision::single_where_it_holds, {}).deviation_nm, a);
   for (std::size_t i = 0; i < a.size(); ++i)
     ASSERT_NEAR(a.data()[i], b.data()[i], 0.01 * b.data()[i]) << i;
 }
@@ -321,7 +326,7 @@ TEST(Posterior, WhatATipsFitChangesIsADoubtOfHeights) {
   Unknowns at = start_at(scene, o);
   for (double& t : at.tip) t *= 5;  // by more than noise explains
   const Curvature a = expected_curvature(o, at, 1, 1, Precision::double_always, {});
-  const Step by_tip = change_by_tip(o, at, a, {});
+  const Step by_tip = change_by_tip(o, at, a, {}, {});
   EXPECT_EQ(by_tip.tip, TipChange{});
   // With the tip put back, everything else is at its optimum again.
   Step tip = o.zero();
@@ -334,12 +339,36 @@ TEST(Posterior, WhatATipsFitChangesIsADoubtOfHeights) {
             0.01 * dot(alone, a.preconditioner->solve(alone)));
 
   const Grid<double> deviation =
-      posterior(o, at, 6, 1, 1, Precision::double_always, {}).deviation_nm;
+      posterior(o, at, {}, 6, 1, 1, Precision::double_always, {}).deviation_nm;
   Grid<double> squares = by_tip.z_nm;
   for (double& v : squares.data()) v *= v;
   squares = GaussianBasis(3, 1).sum(squares);
   for (std::size_t i = 0; i < deviation.size(); ++i)
     ASSERT_GE(1.02 * deviation.data()[i], std::sqrt(squares.data()[i])) << i;
+}
+
+TEST(Posterior, ASpotThatIsNotKnownIsADoubtOfHeightsAndNoBias) {
+  const test::SmallScene scene;
+  Objective o = make_objective(scene, Images::both);
+  Unknowns at = start_at(scene, o);
+  at.mixture.gains = {2000};  // so that heights are the image's matter
+  // What heights a wider spot pulls at.
+  Step wider = o.zero();
+  wider.mixture[2] = 1;
+  std::vector<Step> heights(1, o.zero());
+  heights[0].z_nm = o.product(at, o.evaluate(at), wider).z_nm;
+  const auto of = [&](bool spot, Step* bias) {
+    o.fit_blur = spot;
+    const Curvature a = expected_curvature(o, at, 1, 1, Precision::double_always, {});
+    *bias = prior_bias(o, at, a, {.spot = true}, {});
+    return deviations_of(o, at, a, o.zero(), heights, {});
+  };
+  Step bias_known, bias_unknown;
+  const std::vector<double> known = of(false, &bias_known), unknown = of(true, &bias_unknown);
+  EXPECT_GT(unknown[0], 1.1 * known[0]);
+  EXPECT_EQ(bias_unknown.mixture[2], 0);
+  add(bias_unknown, -1, bias_known);
+  EXPECT_LT(dot(bias_unknown, bias_unknown), 0.01 * dot(bias_known, bias_known));
 }
 
 TEST(SemTerm, NearDoesToWavesOfTwelveSamplesWhatTheModelDoes) {

@@ -46,6 +46,10 @@ Grid<double> line_jitter(const PlacedImage& image, double deviation_px);
 /// image. Throws InvalidInput.
 std::vector<SemDiscrepancy> usual_discrepancy(const PlacedImage& image, double share);
 
+/// Root mean square of an image about its mean, over some pixels, so that noise hardly counts.
+/// Throws InvalidInput.
+double contrast_of(const PlacedImage& image);
+
 /// An SEM image and its imaging model: image = sum of gain * channel of the model + offset + noise.
 struct SemData {
   PlacedImage image;  ///< with square pixels of the model's size
@@ -57,6 +61,11 @@ struct SemData {
   /// Independent of each other, in the order of their correlation lengths; none: the model is
   /// right.
   std::vector<SemDiscrepancy> discrepancy = {};
+  /// The discrepancy also follows what the surface is like around each pixel, as far as the image
+  /// says how: standard deviation, in the image's unit, of what functions of slopes and brightness
+  /// may add together. Only with a scan and a discrepancy, and only for Gauss-Newton. 0: it does
+  /// not.
+  double guided_deviation = 0;
   /// What rows that are displaced along themselves by one standard deviation change in the image
   /// (see `line_jitter`). Each row's displacement, in deviations, is standard normal and eliminated
   /// with the discrepancy. Empty: rows are where they belong.

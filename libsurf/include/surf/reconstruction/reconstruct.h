@@ -161,6 +161,10 @@ struct Reconstruction {
   /// Posterior standard deviation of each height, linearised; includes the bias by the prior, what
   /// the surface may be tilted by, and where its walls may be. Empty if not wanted.
   Grid<double> deviation_nm;
+  /// 95 % of draws of each height lie between these two: quantiles of 2.5 and 97.5 % of draws of
+  /// all unknowns. At edges and in narrow places they lie unevenly about the surface. Empty if not
+  /// wanted.
+  Grid<double> lower_nm, upper_nm;
   /// The data that support each height. 1: the tip touched it. 2: the SEM image at least halves the
   /// variance of the height. 3: both. 0: only its neighbours and the prior.
   Grid<unsigned char> data_support;

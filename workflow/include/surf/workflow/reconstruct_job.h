@@ -83,7 +83,7 @@ struct RegionReport {
   std::string name;
   std::int64_t pixels = 0;
   double rms_nm = 0, stated_nm = 0;       ///< error, and posterior standard deviation
-  double coverage_1 = 0, coverage_2 = 0;  ///< as in TruthReport
+  double coverage_1 = 0, coverage_2 = 0, in_interval = 0;  ///< as in TruthReport
 };
 
 /// The difference between a surface and the true one. The median difference is taken off, because a
@@ -93,10 +93,9 @@ struct TruthReport {
   double start_rms_nm = 0;  ///< rms_nm of the eroded scan
   double offset_nm = 0;     ///< median difference
   double plane_rms_nm = 0;  ///< rms with the best plane taken off
-  double coverage_1 = 0,
-         /// Shares of pixels within one and two posterior standard deviations; 0 if these are
-         /// unknown.
-      coverage_2 = 0;
+  /// Shares of pixels within one and two posterior standard deviations, and within the interval of
+  /// 95 %; 0 if these are unknown.
+  double coverage_1 = 0, coverage_2 = 0, in_interval = 0;
   std::int64_t pixels = 0;
   std::vector<RegionReport> regions;  ///< those with pixels; none without deviations
 };
