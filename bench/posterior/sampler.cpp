@@ -294,7 +294,8 @@ int compare_with_sampler(const std::shared_ptr<const ImageModel>& model, std::ui
   const DescentReport ended = gauss_newton(o, f.at, descent);
   const Unknowns optimum = f.at;
   const Curvature a = expected_curvature(o, optimum, seed, 1, Precision::double_always, {});
-  const Posterior said = posterior(o, optimum, {}, 6, seed, 1, Precision::single_where_it_holds, {});
+  const Posterior said =
+      posterior(o, optimum, {}, 6, seed, 1, Precision::single_where_it_holds, {});
 
   const Matrix second = second_derivative(o, optimum, a.state);
   const auto n = second.rows(), heights = n - few;

@@ -7,7 +7,7 @@ namespace surf::reconstruction {
 
 /// What walls may be displaced by, in pixels: the likeliest surface is one of several optima per
 /// wall. Of deviations with 0.15, 0.2, 0.25 and 0.3 pixels those with 0.2 held 94.5 % of walls of
-/// drawn scenes within two (90.0, 96.9 and 98.1 % the others; bench_posterior --fits 60).
+/// drawn scenes within two (90.0, 96.9 and 98.1 % the others; bench_posterior on 60 of them).
 inline constexpr double edge_doubt_px = 0.2;
 
 /// What the surface as a whole may be off by, which no draw of the linearised posterior contains.

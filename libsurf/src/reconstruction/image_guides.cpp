@@ -44,9 +44,18 @@ bool normalise(Grid<double>& guide, const Mask& used) {
     if (used.data()[i]) squares += guide.data()[i] * guide.data()[i];
   }
   const double rms = std::sqrt(squares / n);
-  if (!(rms > 1e-9 * largest)) return false;
+  if (!(rms > 1e-6 * largest)) return false;
   for (double& v : guide.data()) v /= rms;
   return true;
+}
+
+/// Takes off what `guide` has in common with `brightness`; both are normalised.
+void take_off(Grid<double>& guide, const Grid<double>& brightness, const Mask& used) {
+  double common = 0, n = 0;
+  for (std::size_t i = 0; i < guide.size(); ++i)
+    if (used.data()[i]) common += guide.data()[i] * brightness.data()[i], n += 1;
+  for (std::size_t i = 0; i < guide.size(); ++i)
+    guide.data()[i] -= common / n * brightness.data()[i];
 }
 
 }  // namespace
@@ -57,13 +66,16 @@ std::vector<Grid<double>> image_guides(const Grid<double>& z, double pitch_nm,
   const Grid<double> slope = slopes_of(z, pitch_nm),
                      slope_near = GaussianBasis(near_px, threads).sum(slope);
   Grid<double> brightness = simulated;
-  normalise(brightness, used);
+  const bool shows_something = normalise(brightness, used);
   std::vector<Grid<double>> all{squared(brightness), slope,
                                 squared(slope),      slope_near,
                                 squared(slope_near), GaussianBasis(far_px, threads).sum(slope)};
   std::vector<Grid<double>> out;
-  for (Grid<double>& guide : all)
+  for (Grid<double>& guide : all) {
+    if (!normalise(guide, used)) continue;
+    if (shows_something) take_off(guide, brightness, used);
     if (normalise(guide, used)) out.push_back(std::move(guide));
+  }
   return out;
 }
 

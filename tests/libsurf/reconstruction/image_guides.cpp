@@ -25,12 +25,17 @@ TEST(ImageGuides, AreOfMeanZeroAndOneWhereTheImageCounts) {
   Mask used(40, 30, 1);
   for (int y = 0; y < 30; ++y)
     for (int x = 0; x < 5; ++x) used(x, y) = 0;
-  const auto guides = image_guides(hills(), 10, image_of(hills()), used, 1);
+  const Grid<double> image = image_of(hills());
+  const auto guides = image_guides(hills(), 10, image, used, 1);
   ASSERT_EQ(guides.size(), 6u);
   for (const Grid<double>& guide : guides) {
-    double sum = 0, squares = 0;
+    double sum = 0, squares = 0, with_image = 0;
     for (int y = 0; y < 30; ++y)
-      for (int x = 5; x < 40; ++x) sum += guide(x, y), squares += guide(x, y) * guide(x, y);
+      for (int x = 5; x < 40; ++x) {
+        sum += guide(x, y), squares += guide(x, y) * guide(x, y);
+        with_image += guide(x, y) * image(x, y);
+      }
+    EXPECT_NEAR(with_image / (35 * 30), 0, 1e-6);
     EXPECT_NEAR(sum / (35 * 30), 0, 1e-9);
     EXPECT_NEAR(squares / (35 * 30), 1, 1e-9);
   }
@@ -42,7 +47,7 @@ TEST(ImageGuides, KnowNeitherHeightNorDirectionNorGain) {
   for (double& v : other.data()) v = 70 - v;  // every slope the other way round
   Grid<double> image = image_of(hills());
   const auto a = image_guides(hills(), 10, image, used, 1);
-  for (double& v : image.data()) v = 30 + 0.4 * v;
+  for (double& v : image.data()) v = 30 + 0.4 * v;  // another offset and gain
   const auto b = image_guides(other, 10, image, used, 1);
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t k = 0; k < a.size(); ++k)

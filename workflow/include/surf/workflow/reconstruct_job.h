@@ -82,7 +82,7 @@ struct RegionReport {
   /// surface says what is what.
   std::string name;
   std::int64_t pixels = 0;
-  double rms_nm = 0, stated_nm = 0;       ///< error, and posterior standard deviation
+  double rms_nm = 0, stated_nm = 0;  ///< error, and posterior standard deviation
   double coverage_1 = 0, coverage_2 = 0, in_interval = 0;  ///< as in TruthReport
 };
 
