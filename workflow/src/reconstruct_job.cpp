@@ -151,10 +151,15 @@ std::string seen(const ResidualReport& r) {
 }
 
 /// The limits are wider than chance alone: smaller errors change heights by less than their
-/// standard deviations.
+/// standard deviations. What chance makes of few pixels comes on top.
 bool like_noise(const ResidualReport& r) {
-  return r.like_noise && r.deviation >= least_deviation && r.deviation <= largest_deviation &&
-         std::max(std::abs(r.along), std::abs(r.across)) <= largest_correlation;
+  constexpr double standard_errors = 2.5;
+  const double n = std::max(1.0, static_cast<double>(r.pixels)),
+               of_correlation = standard_errors / std::sqrt(n),
+               of_deviation = of_correlation / std::sqrt(2);
+  return r.like_noise && r.deviation >= least_deviation - of_deviation &&
+         r.deviation <= largest_deviation + of_deviation &&
+         std::max(std::abs(r.along), std::abs(r.across)) <= largest_correlation + of_correlation;
 }
 
 /// Reasons against trusting the result.

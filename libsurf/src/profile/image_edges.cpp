@@ -128,8 +128,19 @@ bool cut_off(int top, const std::vector<double>& y, double reaches) {
   return top <= seen || top >= static_cast<double>(y.size()) - 1 - seen;
 }
 
-/// Rims, and on which side of each the material is: the ground beside a wall is darker. Material
-/// and ground take turns, which tells the sides of rims at the image's ends.
+/// How much brighter material is than ground beside rims that the image shows well; 0: none does.
+double material_above_ground(const std::vector<Rim>& rims, const std::vector<double>& y) {
+  std::vector<double> steps;
+  for (const Rim& r : rims)
+    if (!cut_off(r.top, y, 2))
+      steps.push_back(std::abs(level_beside(y, r.top, r.right) - level_beside(y, r.top, r.left)));
+  return median(steps);
+}
+
+/// Rims, and on which side of each the material is: the ground beside a wall is darker. Of a rim at
+/// the image's end hardly more is seen than the rim. Where its own levels differ clearly they tell
+/// its side, else that material and ground take turns, which fails where a rim between is too faint
+/// to be found.
 std::vector<Rim> rims_of(const std::vector<double>& y) {
   const std::vector<int> tops = rims(y);
   std::vector<Rim> out;
@@ -141,9 +152,15 @@ std::vector<Rim> rims_of(const std::vector<double>& y) {
         {tops[i], left, right, level_beside(y, tops[i], left) < level_beside(y, tops[i], right)});
   }
   if (out.size() > 1) {
-    Rim &first = out.front(), &last = out.back();
-    if (cut_off(first.top, y, 2)) first.material_right = !out[1].material_right;
-    if (cut_off(last.top, y, 2)) last.material_right = !out[out.size() - 2].material_right;
+    const double clear = 0.5 * material_above_ground(out, y);
+    const auto turn = [&](Rim& rim, const Rim& neighbour) {
+      if (!cut_off(rim.top, y, 2)) return;
+      const double step = level_beside(y, rim.top, rim.right) - level_beside(y, rim.top, rim.left);
+      if (cut_off(rim.top, y, 1) || !(std::abs(step) > clear) || clear == 0)
+        rim.material_right = !neighbour.material_right;
+    };
+    turn(out.front(), out[1]);
+    turn(out.back(), out[out.size() - 2]);
   }
   return out;
 }

@@ -76,6 +76,23 @@ TEST(ImageEdges, ThePitchIsSeenWhereOneLineAloneIsWhole) {
   EXPECT_EQ(find_edges(part, FeatureKind::line).pitch_nm, 0);
 }
 
+// The second line's left wall has no rim, so that two right walls follow each other.
+TEST(ImageEdges, AWallAtTheImagesEndIsToldByItsOwnLevels) {
+  PlacedImage image;
+  image.pitch_x_nm = image.pitch_y_nm = 2;
+  image.values = Grid<double>(200, 8);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 200; ++x) {
+      const double at = 120 + 2 * x;
+      double nearest = 130 - at;
+      for (const double left : {220.0, 390.0})
+        nearest = std::max(nearest, std::min(at - left, left + 80 - at));
+      const bool faint = at > 190 && at < 250;
+      image.values(x, y) = faint ? 1 + 0.2 * (at > 220) : across(nearest);
+    }
+  EXPECT_NEAR(find_edges(image, FeatureKind::line).pitch_nm, 170, 1);
+}
+
 TEST(ImageEdges, NoiseOfABrightTopIsNoRim) {
   PlacedImage image = lines();
   for (int y = 0; y < 20; ++y)
