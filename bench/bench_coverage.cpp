@@ -11,8 +11,8 @@
 // less the median; shares are of heights within one and two standard deviations (68 and 95 would be
 // right). "Held" are the heights that something holds: of all that are not flat the 80 % whose
 // posterior deviation at the truth, with true tip, map and noise, is least. "Interval" is that of
-// 95 %, from draws. Of the whole and by
-// region (surf/workflow/reconstruct_job.h, RegionReport), and pooled.
+// 95 %, from draws. Of the whole and by region (surf/workflow/reconstruct_job.h, RegionReport), and
+// pooled.
 #include <fmt/format.h>
 
 #include <algorithm>

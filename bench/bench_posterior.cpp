@@ -213,11 +213,10 @@ int calibrate(const std::shared_ptr<const ImageModel>& model, int fits, std::uin
       "{} fits, seeds {} to {}, each twice, in {:.1f} minutes\n\n"
       "Errors over posterior deviations. Expected: 68.3 % within one, 95.4 % within two, mean 0,\n"
       "root mean square 1. Sampling errors are of the scatter of fits. Last: root mean squares of\n"
-      "errors and of deviations, in nm, radians, parts of 1 or grey levels. Intervals are of 95 "
-      "%:\n"
-      "only \"within\" counts. \"Walls ... px\": deviations as if walls might be displaced by so "
-      "many\n"
-      "pixels. Without bias: the bias by the prior is taken off.\n\n"
+      "errors and of deviations, in nm, radians, parts of 1 or grey levels. Of intervals of\n"
+      "95 % only \"within\" counts. \"Walls ... px\": deviations as if walls might be displaced "
+      "by\n"
+      "so many pixels. Without bias: the bias by the prior is taken off.\n\n"
       "Fits that begin at the given values\n",
       fits, first, first + found.size() - 1,
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() / 60);

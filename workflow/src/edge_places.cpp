@@ -55,9 +55,7 @@ void judge_wall(const Line& line, std::size_t begin, std::size_t end, RegionRepo
     found = true;
     off = std::abs(*place - *true_place);
     const double slope = std::abs(line.surface_nm[i + 1] - line.surface_nm[i]);
-    const double share = *place - static_cast<double>(i);
-    stated =
-        ((1 - share) * line.deviation_nm[i] + share * line.deviation_nm[i + 1]) / slope;  // pixels
+    stated = between(line.deviation_nm, *place) / slope;  // pixels
   }
   count(off * line.pitch_nm, found ? stated * line.pitch_nm : 0, report);
   if (!line.lower_nm.empty())

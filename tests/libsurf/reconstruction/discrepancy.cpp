@@ -159,5 +159,17 @@ TEST(UsualDiscrepancy, GrowsWithContrastAndIsNoneForAModelThatIsRight) {
   EXPECT_THROW(usual_discrepancy(image, 1.5), InvalidInput);
 }
 
+TEST(ContrastOf, IsTheRmsAboutTheMeanOfPixelsThatCount) {
+  PlacedImage image;
+  image.values = Grid<double>(80, 40, 100);
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 40; ++x) image.values(x, y) = 300;
+  EXPECT_NEAR(contrast_of(image), 100, 3);
+  image.valid = Mask(80, 40, 1);
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 48; ++x) image.valid(x, y) = 0;
+  EXPECT_NEAR(contrast_of(image), 0, 1e-9);
+}
+
 }  // namespace
 }  // namespace surf::reconstruction

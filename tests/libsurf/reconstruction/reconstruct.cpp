@@ -307,6 +307,20 @@ TEST(Reconstruct, DeviationsDoNotDependOnWhereItWasInterrupted) {
   EXPECT_EQ(again.deviation_nm, whole.deviation_nm);
 }
 
+TEST(Reconstruct, WhatTheDiscrepancyFollowsDoesNotDependOnWhereItWasInterrupted) {
+  test::SmallScene scene;
+  scene.sem.discrepancy = usual_discrepancy(scene.sem.image, 0.05);
+  const Reconstruction splines = reconstruct(&scene.afm, &scene.sem, quick());
+  scene.sem.guided_deviation = 0.05 * contrast_of(scene.sem.image);
+  Journal journal;
+  const Reconstruction whole = reconstruct(&scene.afm, &scene.sem, quick(), &journal);
+  const Reconstruction again = reconstruct(&scene.afm, &scene.sem, quick(), &journal);
+  EXPECT_EQ(again.surface.z_nm, whole.surface.z_nm);
+  EXPECT_EQ(again.sem_discrepancy, whole.sem_discrepancy);
+  EXPECT_NE(whole.surface.z_nm, splines.surface.z_nm);
+  EXPECT_LT(whole.scales.back().sem, splines.scales.back().sem);  // more is explained
+}
+
 TEST(Reconstruct, FlatAndSaturatedImagesGiveFiniteSurfaces) {
   test::SmallScene scene;
   for (double& v : scene.sem.image.values.data()) v = 120;
