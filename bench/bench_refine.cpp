@@ -37,10 +37,12 @@ constexpr double pixel_nm = 4, spot_nm = 2, energy_ev = 1000, gain = 900, offset
 struct Case {
   std::string name;
   TriangleMesh truth, start;
-  double tilt_deg = 15;
+  std::vector<double> tilts_deg{15, 15}, azimuths_deg{0, 180};
   int columns = 64, rows = 40;
   double line_height_nm = 0;  ///< of a line; 0: it is none
   double lean_nm = 0;         ///< of its walls over their feet
+  double depth_nm = 0;        ///< of a hole; 0: it is none
+  double height_error_nm = 4;
 };
 
 using Loop = std::vector<Vec3>;
@@ -99,10 +101,12 @@ TriangleMesh mushroom(double stem_radius, double stem_height, double cap_radius,
   std::vector<Loop> loops{circle(beyond_nm, 0), circle(stem_radius, 0),
                           circle(stem_radius, stem_height)};
   constexpr int steps = 14;
-  for (int i = 0; i <= steps; ++i) {  // an ellipse from its lower side to its top
-    const double a = std::numbers::pi * (-0.42 + (0.5 + 0.42) * i / steps) * 0.985;
-    loops.push_back(
-        circle(cap_radius * std::cos(a), stem_height + 0.5 * cap_height * (1 + std::sin(a))));
+  // An ellipse from where it meets the stem to its top.
+  const double first = -std::acos(stem_radius / cap_radius), last = 0.49 * std::numbers::pi;
+  for (int i = 1; i <= steps; ++i) {
+    const double a = first + (last - first) * i / steps;
+    loops.push_back(circle(cap_radius * std::cos(a),
+                           stem_height + 0.5 * cap_height * (std::sin(a) - std::sin(first))));
   }
   return stacked(loops);
 }
@@ -124,35 +128,68 @@ Case line_case(double angle, double tilt) {
   return {fmt::format("line{:g}", angle),
           line(92, angle, 100, 4, 3),
           line(98, 90, 104, 3, 3),
-          tilt,
+          {tilt, tilt},
+          {0, 180},
           64,
           16,
           100,
           100 * std::tan((angle - 90) * std::numbers::pi / 180)};
 }
 
-std::vector<Case> all_cases() {
-  return {line_case(100, 15),
-          line_case(96, 10),
-          line_case(88, 15),
-          line_case(75, 15),
-          {"mushroom", mushroom(25, 45, 62, 60), mushroom(30, 50, 57, 54), 20, 56, 56},
-          {"cube", cube_on_pillar(50, 40, 90, 70), cube_on_pillar(60, 46, 96, 66), 20, 56, 56}};
+/// A contact hole, whose depth is told 20 % wrong: from above and from both sides.
+Case hole_case(double depth, double told) {
+  const auto hole = [&](double width, double angle, double to) {
+    FeatureShape f;
+    f.kind = FeatureKind::hole;
+    f.width_nm = width;
+    f.wall = {to, angle, 4, 3};
+    return feature_mesh(f, 400);
+  };
+  return {fmt::format("hole{:g}", depth),
+          hole(100, 86, depth),
+          hole(105, 88, told),
+          {0, 20, 20},
+          {0, 0, 180},
+          44,
+          44,
+          0,
+          0,
+          depth,
+          0.25 * told};
 }
 
-PlacedImage image_of(const Case& c, double azimuth_deg, std::uint64_t seed, bool own,
+std::vector<Case> all_cases() {
+  return {
+      line_case(100, 15),
+      line_case(96, 10),
+      line_case(88, 15),
+      line_case(75, 15),
+      {"mushroom", mushroom(25, 45, 62, 60), mushroom(30, 50, 57, 54), {20, 20}, {0, 180}, 56, 56},
+      {"cube",
+       cube_on_pillar(50, 40, 90, 70),
+       cube_on_pillar(60, 46, 96, 66),
+       {20, 20},
+       {0, 180},
+       56,
+       56},
+      hole_case(100, 120),
+      hole_case(75, 60),
+      hole_case(130, 105)};
+}
+
+PlacedImage image_of(const Case& c, std::size_t view, std::uint64_t seed, bool own,
                      mc::LibrarySource& libraries) {
   mc::Specimen specimen;
   specimen.materials = {io::find_material("Si", "bench")};
   specimen.bodies.push_back({"truth", c.truth, 0});
   mc::Beam beam;
   beam.energy_ev = energy_ev, beam.spot_nm = spot_nm;
-  beam.tilt_deg = c.tilt_deg, beam.azimuth_deg = azimuth_deg;
+  beam.tilt_deg = c.tilts_deg[view], beam.azimuth_deg = c.azimuths_deg[view];
   mc::Scan scan;
   scan.width = c.columns, scan.height = c.rows;
   scan.pixel_x_nm = scan.pixel_y_nm = pixel_nm;
   scan.center_x_nm = 2.5, scan.center_y_nm = -1;
-  scan.center_z_nm = 50;
+  if (beam.tilt_deg > 0) scan.center_z_nm = 50;
   mc::SimulationOptions options;
   options.budget = mc::ElectronsPerPixel{150};
   options.method = mc::Method::replay;
@@ -193,11 +230,65 @@ struct Score {
   }
 };
 
-/// How far a wall leans out over its foot, and the standard error of that.
-struct Lean {
+/// Where images tell of what rises from the ground, and where they do not.
+struct Errors {
+  Score told, untold;
+};
+
+/// Less the shift along x and y that suits best: where the whole is no image tells.
+Errors errors_of(const TriangleMesh& mesh, const workflow::RefineSummary& s, const Case& c) {
+  constexpr double sensitive_nm = 3, ground_nm = 3;
+  const TriangleTree truth(c.truth);
+  const std::vector<Vec3> normals = vertex_normals(mesh);
+  std::vector<std::size_t> vertices;
+  std::vector<double> off(normals.size(), 0);
+  std::vector<bool> seen(normals.size(), false);
+  for (std::size_t v = 0; v < normals.size(); ++v) {
+    if (s.deviation_nm[v] == 0 || std::abs(mesh.vertices_nm[v].z) < ground_nm) continue;
+    double information = 0;
+    for (const std::vector<double>& view : s.sensitivity) information += view[v] * view[v];
+    seen[v] = information > 1 / (sensitive_nm * sensitive_nm);
+    vertices.push_back(v);
+  }
+  Vec3 shift;
+  constexpr int rounds = 5;  // the nearest place of the truth moves with the shift
+  for (int k = 0; k < rounds; ++k) {
+    double xx = 0, xy = 0, yy = 0, x = 0, y = 0;
+    for (const std::size_t v : vertices) {
+      off[v] = off_nm(mesh.vertices_nm[v] + shift, normals[v], truth);
+      if (!seen[v]) continue;
+      const Vec3& n = normals[v];
+      xx += n.x * n.x, xy += n.x * n.y, yy += n.y * n.y, x -= n.x * off[v], y -= n.y * off[v];
+    }
+    const double determinant = xx * yy - xy * xy;
+    if (determinant > 0)
+      shift += {(yy * x - xy * y) / determinant, (xx * y - xy * x) / determinant, 0};
+  }
+  Errors out;
+  for (const std::size_t v : vertices)
+    (seen[v] ? out.told : out.untold).add(off[v], s.deviation_nm[v]);
+  return out;
+}
+
+/// A length and its standard error, in nm.
+struct Told {
   double value = 0, error = 0;
 };
-Lean lean_of(const TriangleMesh& mesh, const workflow::RefineSummary& s, bool right,
+
+/// The standard deviation of a sum of the vertices' places, each times its weight.
+double deviation_of(const workflow::RefineSummary& s, const std::vector<Vec3>& weights) {
+  std::vector<double> by(s.modes.size(), 0);
+  for (std::size_t k = 0; k < by.size(); ++k)
+    for (const MeshMode::Move& m : s.modes[k].moves) by[k] += dot(weights[m.vertex], m.by);
+  double variance = 0;
+  for (std::size_t k = 0; k < by.size(); ++k)
+    for (std::size_t l = 0; l < by.size(); ++l)
+      variance += by[k] * by[l] * s.covariance[k * by.size() + l];
+  return std::sqrt(variance);
+}
+
+/// How far a wall leans out over its foot.
+Told lean_of(const TriangleMesh& mesh, const workflow::RefineSummary& s, bool right,
              double height) {
   const std::vector<Vec3> normals = vertex_normals(mesh);
   std::vector<std::size_t> wall;
@@ -221,15 +312,28 @@ Lean lean_of(const TriangleMesh& mesh, const workflow::RefineSummary& s, bool ri
   const double slope = xz / zz;
   std::vector<double> weight(mesh.vertices_nm.size(), 0);
   for (const std::size_t v : wall) weight[v] = (mesh.vertices_nm[v].z - z) / zz;
-  std::vector<double> by(s.modes.size(), 0);
-  for (std::size_t k = 0; k < by.size(); ++k)
-    for (const MeshMode::Move& m : s.modes[k].moves)
-      by[k] += weight[m.vertex] * (m.by.x - slope * m.by.z);
-  double variance = 0;
-  for (std::size_t k = 0; k < by.size(); ++k)
-    for (std::size_t l = 0; l < by.size(); ++l)
-      variance += by[k] * by[l] * s.covariance[k * by.size() + l];
-  return {(right ? 1 : -1) * slope * height, std::sqrt(variance) * height};
+  std::vector<Vec3> weights;
+  for (const double w : weight) weights.push_back({w, 0, -slope * w});
+  return {(right ? 1 : -1) * slope * height, deviation_of(s, weights) * height};
+}
+
+/// How deep a hole is under its surroundings in view.
+Told depth_of(const TriangleMesh& mesh, const workflow::RefineSummary& s, double width) {
+  std::vector<Vec3> weights(mesh.vertices_nm.size());
+  for (const bool bottom : {true, false}) {
+    std::vector<std::size_t> there;
+    for (std::size_t v = 0; v < weights.size(); ++v) {
+      const double r = std::hypot(mesh.vertices_nm[v].x, mesh.vertices_nm[v].y);
+      if (bottom ? r < 0.3 * width : r > 0.65 * width && r < 0.85 * width) there.push_back(v);
+    }
+    for (const std::size_t v : there)
+      weights[v].z = (bottom ? -1.0 : 1.0) / static_cast<double>(there.size());
+  }
+  Told out;
+  for (std::size_t v = 0; v < weights.size(); ++v)
+    out.value += dot(weights[v], mesh.vertices_nm[v]);
+  out.error = deviation_of(s, weights);
+  return out;
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -242,17 +346,17 @@ void measure(const Case& c, const std::string& folder, std::uint64_t seed, bool 
   job.start = c.start;
   job.material = io::find_material("Si", "bench");
   job.energy_ev = energy_ev, job.spot_nm = spot_nm;
-  job.tilts_deg = {c.tilt_deg};
-  job.azimuths_deg = {0, 180};
-  job.height_error_nm = 4;
-  job.electrons = 600, job.effect_electrons = 50, job.smooth_rounds = 4;
-  if (c.line_height_nm > 0) job.bump_rounds = 0;  // a line has no other shape
-  job.cache = io::cache_folder("");
-  for (const double azimuth : job.azimuths_deg) {
-    job.images.push_back(
-        {image_of(c, azimuth, seed + static_cast<std::uint64_t>(azimuth), own, libraries),
-         fmt::format("{}-{:g}.exr", c.name, azimuth)});
+  job.tilts_deg = c.tilts_deg, job.azimuths_deg = c.azimuths_deg;
+  job.height_error_nm = c.height_error_nm;
+  job.smooth_rounds = 4;
+  if (c.line_height_nm > 0 || c.depth_nm > 0) {  // they have no other shape, and few pixels
+    job.bump_rounds = 0;
+    job.electrons = 600, job.effect_electrons = 50;
   }
+  job.cache = io::cache_folder("");
+  for (std::size_t v = 0; v < c.tilts_deg.size(); ++v)
+    job.images.push_back(
+        {image_of(c, v, seed + 180 * v, own, libraries), fmt::format("{}-{}.exr", c.name, v + 1)});
   if (!folder.empty()) {
     const std::filesystem::path home = std::filesystem::path(folder) / c.name;
     std::filesystem::create_directories(home);
@@ -275,36 +379,33 @@ void measure(const Case& c, const std::string& folder, std::uint64_t seed, bool 
   reporter.on_stage = [&](const std::string& stage) {
     fmt::print(stderr, "  {} {:.0f} s\n", stage, seconds_since(begin));
   };
+  int twentieths = 0;
   reporter.on_progress = [&](double done, double total, std::string_view) {
-    fmt::print(stderr, "  {:.3f} {:.0f} s\n", done / total, seconds_since(begin));
+    const int now = static_cast<int>(20 * done / total);
+    if (now != twentieths) fmt::print(stderr, "  {} % {:.0f} s\n", 5 * now, seconds_since(begin));
+    twentieths = now;
   };
   const workflow::RefineSummary s = workflow::run(job, reporter);
   const double took = seconds_since(begin);
-  const TriangleTree truth(c.truth);
-  Score before, told, untold;
-  const std::vector<Vec3> normals = vertex_normals(s.mesh), first = vertex_normals(s.before);
-  constexpr double sensitive = 3;  // nm
-  for (std::size_t v = 0; v < normals.size(); ++v) {
-    if (s.deviation_nm[v] == 0 || s.displacement_nm[v] == 0) continue;
-    double information = 0;
-    for (const std::vector<double>& view : s.sensitivity) information += view[v] * view[v];
-    const double off = off_nm(s.mesh.vertices_nm[v], normals[v], truth);
-    const bool seen = information > 1 / (sensitive * sensitive);
-    (seen ? told : untold).add(off, s.deviation_nm[v]);
-    if (seen) before.add(off_nm(s.before.vertices_nm[v], first[v], truth), 1);
-  }
+  const Errors before = errors_of(s.before, s, c), after = errors_of(s.mesh, s, c);
   fmt::print("{}: {:.0f} s, {:.1f} million primaries, {} triangles, {} self-intersections{}\n",
              c.name, took, 1e-6 * static_cast<double>(s.primaries), s.mesh.triangles.size(),
              s.self_intersections, s.reasons.empty() ? "" : ", not trusted: " + s.reasons.front());
-  fmt::print("  where an image tells: {} (start: {:.2f} nm)\n  elsewhere: {}\n", told.words(),
-             std::sqrt(before.squares / std::max(1.0, before.count)), untold.words());
+  fmt::print("  where an image tells: {}\n    start: {}\n  elsewhere: {}\n", after.told.words(),
+             before.told.words(), after.untold.words());
   if (c.line_height_nm > 0)
     for (const bool right : {false, true}) {
-      const Lean found = lean_of(s.mesh, s, right, c.line_height_nm);
+      const Told found = lean_of(s.mesh, s, right, c.line_height_nm);
       fmt::print("  {} wall leans out by {:.2f} ± {:.2f} nm, {:.2f} true: off by {:.2f}\n",
                  right ? "right" : "left", found.value, found.error, c.lean_nm,
                  found.value - c.lean_nm);
     }
+  if (c.depth_nm > 0) {
+    const Told found = depth_of(s.mesh, s, 100), first_guess = depth_of(s.before, s, 100);
+    fmt::print("  depth {:.1f} ± {:.1f} nm, told as {:.1f}, {:.1f} true: off by {:.1f} %\n",
+               found.value, found.error, first_guess.value, c.depth_nm,
+               100 * (found.value / c.depth_nm - 1));
+  }
   for (std::size_t v = 0; v < s.images.size(); ++v)
     fmt::print(
         "  image {}: {:.1f} % unexplained, {:.1f} % before; tilt {:.2f} deg, bend {:.3f}, "

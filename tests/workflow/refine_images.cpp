@@ -97,23 +97,61 @@ TEST(RefineImages, EffectsAreThoseThatLongSimulationsDifferBy) {
 
   constexpr double step_nm = 2;  // of the effects, too
   double chi_squared = 0, product = 0, squares = 0;
-  const Windows before = long_simulation(line, 1);
   for (std::size_t m = 0; m < modes.size(); ++m) {
-    std::vector<double> amplitudes(modes.size(), 0);
-    amplitudes[m] = step_nm;
-    const Windows after = long_simulation(moved(line, modes, amplitudes), 2 + m);
+    const auto moved_by = [&](double amplitude, std::uint64_t seed) {
+      std::vector<double> amplitudes(modes.size(), 0);
+      amplitudes[m] = amplitude;
+      return long_simulation(moved(line, modes, amplitudes), seed);
+    };
+    const Windows before = moved_by(-step_nm, 2 * m + 1), after = moved_by(step_nm, 2 * m + 2);
     for (std::size_t k = 0; k < before.sum.size(); ++k) {
-      const double effect = effects[m].sum[k], wanted = (after.sum[k] - before.sum[k]) / step_nm,
+      const double effect = effects[m].sum[k],
+                   wanted = (after.sum[k] - before.sum[k]) / (2 * step_nm),
                    own = (effects[m].variance[k] - repeats * effect * effect) /
                          (repeats * (repeats - 1.0)),
-                   others = (before.variance[k] + after.variance[k]) / (step_nm * step_nm);
+                   others = (before.variance[k] + after.variance[k]) / (4 * step_nm * step_nm);
       chi_squared += (effect - wanted) * (effect - wanted) / (own + others);
       product += effect * wanted, squares += wanted * wanted - others;
     }
   }
-  // All modes share the image that the steps start from, and a library's chance is nearly nothing.
-  EXPECT_NEAR(chi_squared / static_cast<double>(modes.size() * before.sum.size()), 1, 0.7);
+  // A library's chance is nearly nothing.
+  EXPECT_NEAR(chi_squared / static_cast<double>(modes.size() * effects[0].sum.size()), 1, 0.7);
   EXPECT_NEAR(product / squares, 1, 0.04);
+}
+
+// A roof over level ground, seen from above: its underside is not, nor is the ground below.
+TEST(RefineImages, WhatIsHiddenIsNotInSight) {
+  TriangleMesh mesh;
+  constexpr int side = 11;
+  for (const double z : {0.0, 20.0})
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) mesh.vertices_nm.push_back({10.0 * x, 10.0 * y, z});
+  const auto add = [&](std::uint32_t first, int from, int to) {
+    for (int y = from; y < to; ++y)
+      for (int x = from; x < to; ++x) {
+        const auto a = first + static_cast<std::uint32_t>(y * side + x);
+        mesh.triangles.push_back({a, a + 1, a + side + 1});
+        mesh.triangles.push_back({a, a + side + 1, a + side});
+      }
+  };
+  add(0, 0, side - 1);
+  add(side * side, 2, 8);
+  Grid<Vec3> seen(100, 100);
+  for (int y = 0; y < 100; ++y)
+    for (int x = 0; x < 100; ++x) {
+      const bool roof = x >= 20 && x < 80 && y >= 20 && y < 80;
+      seen(x, y) = {x + 0.5, y + 0.5, roof ? 20.0 : 0.0};
+    }
+  seen(0, 0).x = std::nan("");  // a pixel that sees nothing
+  const std::vector<bool> in_sight = vertices_in_sight(mesh, seen);
+  const auto at = [&](int x, int y, bool roof) {
+    return static_cast<bool>(
+        in_sight[static_cast<std::size_t>((roof ? side * side : 0) + y * side + x)]);
+  };
+  EXPECT_TRUE(at(1, 1, false));
+  EXPECT_TRUE(at(5, 5, true));
+  EXPECT_FALSE(at(5, 5, false));  // two triangles under the roof's edge and more
+  EXPECT_FALSE(at(0, 0, true));   // of no triangle
 }
 
 }  // namespace

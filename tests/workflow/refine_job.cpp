@@ -66,7 +66,7 @@ class RefineJobTest : public testing::Test {
     job_.edge_nm = 5;
     job_.start_error_nm = 5;
     job_.height_error_nm = 1;
-    job_.electrons = 80, job_.effect_electrons = 20;
+    job_.electrons = 400, job_.effect_electrons = 20;
     job_.smooth_rounds = 2, job_.bump_rounds = 0;
     job_.picture = false;
     static const test::TemporaryFolder cascades;

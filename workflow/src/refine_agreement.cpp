@@ -37,15 +37,19 @@ double correlation(const RefinedView& v) {
 }
 
 double unexplained_share(const RefinedView& v, const RefinedViewState& s, const SemNoise& noise,
-                         const Grid<double>& chance_in_noise) {
+                         const Grid<double>& chance_in_noise, bool less_known_errors) {
   double n = 0, left = 0, sum = 0, squares = 0, chance = 0;
+  const Grid<double> nothing(v.measured.width(), v.measured.height(), 0),
+      first = less_known_errors ? simulation_error(v, s, v.first_half) : nothing,
+      second = less_known_errors ? simulation_error(v, s, v.second_half) : nothing;
   for (std::size_t p = 0; p < v.measured.size(); ++p) {
     if (!v.used.includes(p)) continue;
-    const auto off = [&](const Grid<double>& simulated) {
-      return v.measured.data()[p] - s.gain * simulated.data()[p] - s.offset;
+    const auto off = [&](const Grid<double>& simulated, const Grid<double>& error) {
+      return v.measured.data()[p] - s.gain * simulated.data()[p] - s.offset - error.data()[p];
     };
     const double mean = s.gain * v.simulated.data()[p] + s.offset;
-    ++n, left += off(v.first_half) * off(v.second_half), chance += noise.variance(mean);
+    ++n, left += off(v.first_half, first) * off(v.second_half, second),
+        chance += noise.variance(mean);
     if (!chance_in_noise.empty()) chance -= s.gain * s.gain * chance_in_noise.data()[p];
     sum += mean, squares += mean * mean;
   }

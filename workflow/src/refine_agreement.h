@@ -21,8 +21,10 @@ double correlation(const RefinedView& view);
 
 /// Rms of what gain and offset leave of an image with two simulations, less what noise makes of it,
 /// over the signal's deviation. `chance_in_noise`: variances of simulated yields that the noise
-/// contains; empty: none.
+/// contains; empty: none. `less_known_errors`: less what the state says that simulations are off
+/// by, too.
 double unexplained_share(const RefinedView& view, const RefinedViewState& state,
-                         const SemNoise& noise, const Grid<double>& chance_in_noise);
+                         const SemNoise& noise, const Grid<double>& chance_in_noise,
+                         bool less_known_errors = false);
 
 }  // namespace surf::workflow

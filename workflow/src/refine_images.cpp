@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <utility>
 
 #include "surf/core/error.h"
 #include "surf/core/parallel.h"
@@ -12,6 +13,7 @@
 #include "surf/mc/geometry/field_in_reach.h"
 #include "surf/mc/physics/medium.h"
 #include "surf/mc/simulate.h"
+#include "surf/mesh/triangle_tree.h"
 #include "surf/reconstruction/view.h"
 #include "surf/workflow/signal_detectors.h"
 
@@ -31,6 +33,80 @@ std::size_t detector_of(const std::string& signal) {
 }
 
 bool is_seen(const Vec3& p) { return std::isfinite(p.x); }
+
+using Electrons = Grid<std::int64_t>;
+constexpr std::int64_t images_of_effect = 4;  // two simulations, steps to both sides
+constexpr std::int64_t least_look = 8, most_times = 10;
+
+/// What two simulations change at each pixel, per unit of a step, and their electrons.
+struct Changes {
+  std::vector<double> first, second;
+  std::int64_t electrons = 0;
+};
+
+/// `image(by, seed, electrons)`: an image after a step. Steps go to both sides: what a wall shows
+/// that leans out more is not the opposite of what one shows that leans less.
+template <class Image>
+Changes changes_with(const Image& image, double step, const Electrons& electrons,
+                     std::uint64_t seed) {
+  const auto once = [&](std::uint64_t own) {
+    const RefineImage less = image(-step, own, electrons), more = image(step, own, electrons);
+    std::vector<double> change;
+    for (std::size_t p = 0; p < more.mean.size(); ++p)
+      change.push_back((more.mean.data()[p] - less.mean.data()[p]) / (2 * step));
+    return change;
+  };
+  Changes out{once(seed), once(seed + 1)};
+  for (const std::int64_t n : electrons.data()) out.electrons += images_of_effect * n;
+  return out;
+}
+
+/// Pixels that changed, and their neighbours, among those that are allowed.
+Mask changed(const Changes& c, const Mask& allowed) {
+  const int w = allowed.width(), h = allowed.height();
+  Mask out(w, h, 0);
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x) {
+      const auto p = static_cast<std::size_t>(y * w + x);
+      if (c.first[p] == 0 && c.second[p] == 0) continue;
+      for (int j = std::max(0, y - 1); j <= std::min(h - 1, y + 1); ++j)
+        for (int i = std::max(0, x - 1); i <= std::min(w - 1, x + 1); ++i)
+          out(i, j) = allowed(i, j);
+    }
+  return out;
+}
+
+/// Likewise with `electrons` per image and allowed pixel on average: a first look tells where
+/// images change, with common random numbers nowhere else, and the rest goes there. What changes so
+/// little that the look misses it counts as nothing, which makes steps no less right, only longer.
+template <class Image>
+Changes changes_by(const Image& image, double step, const Mask& allowed, std::int64_t electrons,
+                   std::uint64_t seed) {
+  const std::int64_t look = std::min(electrons, std::max(least_look, electrons / 4));
+  const auto at = [&](const Mask& mask, std::int64_t each) {
+    Electrons out(mask.width(), mask.height(), 0);
+    for (std::size_t p = 0; p < out.size(); ++p) out.data()[p] = mask.data()[p] != 0 ? each : 0;
+    return out;
+  };
+  const auto count = [](const Mask& mask) {
+    return std::ranges::count_if(mask.data(), [](auto m) { return m != 0; });
+  };
+  Changes out = changes_with(image, step, at(allowed, look), seed);
+  const Mask where = changed(out, allowed);
+  const std::int64_t left = (electrons - look) * count(allowed), there = count(where);
+  if (left == 0 || there == 0) return out;
+  const std::int64_t more = std::min(left / there, most_times * electrons);
+  if (more == 0) return out;
+  const Changes rest = changes_with(image, step, at(where, more), seed + 2);
+  const double share = static_cast<double>(more) / static_cast<double>(look + more);
+  for (std::size_t p = 0; p < out.first.size(); ++p) {
+    if (where.data()[p] == 0) continue;
+    out.first[p] += share * (rest.first[p] - out.first[p]);
+    out.second[p] += share * (rest.second[p] - out.second[p]);
+  }
+  out.electrons += rest.electrons;
+  return out;
+}
 
 }  // namespace
 
@@ -144,24 +220,33 @@ Grid<Vec3> RefineImages::seen(const TriangleMesh& mesh, std::size_t view,
   return out;
 }
 
+std::vector<bool> vertices_in_sight(const TriangleMesh& mesh, const Grid<Vec3>& seen) {
+  const TriangleTree tree(mesh);
+  std::vector<bool> hit(mesh.vertices_nm.size(), false);
+  std::uint32_t last = 0;
+  for (const Vec3& place : seen.data()) {
+    if (!is_seen(place)) continue;
+    last = tree.closest(place, last).triangle;
+    for (const std::uint32_t corner : mesh.triangles[last]) hit[corner] = true;
+  }
+  std::vector<bool> out = hit;
+  for (const Triangle& t : mesh.triangles)
+    if (hit[t[0]] || hit[t[1]] || hit[t[2]]) out[t[0]] = out[t[1]] = out[t[2]] = true;
+  return out;
+}
+
 void RefineImages::add_effects(const TriangleMesh& base, const std::vector<MeshMode>& modes,
                                const std::vector<double>& amplitudes_nm,
                                const std::vector<RefinedViewState>& states,
                                std::int64_t all_electrons, std::uint64_t seed, const Watch& watch,
                                std::vector<RefinedView>& views, std::int64_t& counted) const {
-  constexpr int halves = 2;
-  const std::int64_t electrons = std::max<std::int64_t>(1, all_electrons / halves);
+  const std::int64_t electrons = std::max<std::int64_t>(1, all_electrons / images_of_effect);
   const std::vector<std::vector<std::size_t>> groups = groups_apart(modes, 2 * margin_nm_);
   const TriangleMesh now = moved(base, modes, amplitudes_nm);
   Watch quiet;
   quiet.cancel = watch.cancel;
-  std::vector<std::array<RefineImage, halves>> before(views.size());
   std::vector<Grid<Vec3>> hits(views.size());
   for (std::size_t v = 0; v < views.size(); ++v) {
-    for (int half = 0; half < halves; ++half)
-      before[v][static_cast<std::size_t>(half)] =
-          render(now, v, states[v], electrons, seed + static_cast<std::uint64_t>(half),
-                 job_.threads, quiet);
     hits[v] = seen(now, v, states[v]);
     views[v].effects.assign(modes.size(), {});
   }
@@ -184,43 +269,43 @@ void RefineImages::add_effects(const TriangleMesh& base, const std::vector<MeshM
       [&](std::size_t task, int) {
         const std::size_t v = task / per_view, g = task % per_view;
         RefinedView& view = views[v];
+        Mask allowed(view.measured.width(), view.measured.height(), 0);
         if (g >= groups.size()) {
-          RefinedViewState turned = states[v];
-          (g == groups.size() ? turned.tilt_x_deg : turned.tilt_y_deg) += step_deg;
+          std::ranges::fill(allowed.data(), 1);
           ModeEffect effect;
-          for (std::uint32_t p = 0; p < view.measured.size(); ++p) effect.pixels.push_back(p);
-          for (std::size_t half = 0; half < halves; ++half) {
-            const RefineImage after = render(now, v, turned, electrons, seed + half, 1, quiet);
-            std::vector<double>& change = half == 0 ? effect.first : effect.second;
-            for (std::size_t p = 0; p < after.mean.size(); ++p)
-              change.push_back((after.mean.data()[p] - before[v][half].mean.data()[p]) / step_deg);
-          }
+          for (std::uint32_t p = 0; p < allowed.size(); ++p) effect.pixels.push_back(p);
+          const auto turned_by = [&](double by_deg, std::uint64_t own, const Electrons& pixels) {
+            RefinedViewState turned = states[v];
+            (g == groups.size() ? turned.tilt_x_deg : turned.tilt_y_deg) += by_deg;
+            return render(now, v, turned, electrons, own, 1, quiet, &pixels);
+          };
+          Changes change = changes_by(turned_by, step_deg, allowed, electrons, seed);
+          effect.first = std::move(change.first), effect.second = std::move(change.second);
           (g == groups.size() ? view.tilt_x : view.tilt_y) = std::move(effect);
-        } else {
-          std::vector<double> amplitudes = amplitudes_nm;
-          Grid<std::int64_t> pixels(view.measured.width(), view.measured.height(), 0);
-          std::int64_t count = 0;
-          for (const std::size_t mode : groups[g]) {
-            amplitudes[mode] += step_nm;
-            view.effects[mode].pixels = affected(v, mode);
-            for (const std::uint32_t p : view.effects[mode].pixels) pixels.data()[p] = electrons;
-          }
-          for (const std::int64_t n : pixels.data()) count += halves * n;
-          if (count == 0) return;  // this view does not see these
-          const TriangleMesh mesh = moved(base, modes, amplitudes);
-          for (std::size_t half = 0; half < halves; ++half) {
-            const RefineImage after =
-                render(mesh, v, states[v], electrons, seed + half, 1, quiet, &pixels);
-            for (const std::size_t mode : groups[g]) {
-              ModeEffect& effect = view.effects[mode];
-              for (const std::uint32_t p : effect.pixels)
-                (half == 0 ? effect.first : effect.second)
-                    .push_back((after.mean.data()[p] - before[v][half].mean.data()[p]) / step_nm);
-            }
-          }
-          const std::lock_guard lock(adding);
-          counted += count;
+          return;
         }
+        for (const std::size_t mode : groups[g]) {
+          view.effects[mode].pixels = affected(v, mode);
+          for (const std::uint32_t p : view.effects[mode].pixels) allowed.data()[p] = 1;
+        }
+        if (std::ranges::none_of(allowed.data(), [](auto a) { return a != 0; }))
+          return;  // this view does not see these
+        const auto moved_by = [&](double by_nm, std::uint64_t own, const Electrons& pixels) {
+          std::vector<double> amplitudes = amplitudes_nm;
+          for (const std::size_t mode : groups[g]) amplitudes[mode] += by_nm;
+          return render(moved(base, modes, amplitudes), v, states[v], electrons, own, 1, quiet,
+                        &pixels);
+        };
+        const Changes change = changes_by(moved_by, step_nm, allowed, electrons, seed);
+        for (const std::size_t mode : groups[g]) {
+          ModeEffect& effect = view.effects[mode];
+          for (const std::uint32_t p : effect.pixels) {
+            effect.first.push_back(change.first[p]);
+            effect.second.push_back(change.second[p]);
+          }
+        }
+        const std::lock_guard lock(adding);
+        counted += change.electrons;
       },
       watch);
 }

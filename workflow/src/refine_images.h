@@ -31,9 +31,9 @@ class RefineImages {
   /// What the middles of pixels see of the mesh; NaN where they see nothing.
   Grid<Vec3> seen(const TriangleMesh& mesh, std::size_t view, const RefinedViewState& state) const;
 
-  /// What modes change in a view, by two simulations of half of `electrons` per pixel each, with
-  /// the seeds `seed` and `seed` + 1; and tilts of the beam, where they are fitted. `counted` adds
-  /// up primaries.
+  /// What modes change in a view, by two simulations with the seeds `seed` and `seed` + 1, each of
+  /// a step to either side, `electrons` per pixel in all four images together; and tilts of the
+  /// beam, where they are fitted. `counted` adds up primaries.
   void add_effects(const TriangleMesh& base, const std::vector<MeshMode>& modes,
                    const std::vector<double>& amplitudes_nm,
                    const std::vector<RefinedViewState>& states, std::int64_t electrons,
@@ -50,6 +50,9 @@ class RefineImages {
   mc::Method method_;
   double margin_nm_;  // how far beside a bump its effects reach
 };
+
+/// Vertices of the triangles that pixels see, and of those next to these.
+std::vector<bool> vertices_in_sight(const TriangleMesh& mesh, const Grid<Vec3>& seen);
 
 /// What a list says of each image: one value for each, or one for all.
 template <class T>

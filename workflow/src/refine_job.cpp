@@ -13,6 +13,7 @@
 #include "refine_agreement.h"
 #include "refine_images.h"
 #include "refine_output.h"
+#include "relief_box.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/mesh/height_field_mesh.h"
@@ -34,21 +35,25 @@ constexpr double unrelated = 0.3;   // correlation of images that show different
 constexpr double largest_step = 2;  // of an amplitude, over its prior deviation
 constexpr double settled = 0.7;     // over its deviation: nothing moves any more
 constexpr double settled_of_prior = 0.02;
-constexpr double cut_short = 0.3, settled_by_chance = 2;  // of a step; over the deviation
-constexpr double shift_pixels = 3;                        // what images' places may be off by
-constexpr double as_good = 0.03;                          // correlations that differ by less
-constexpr double least_relief = 0.1;          // of the height, above or below the ground
+constexpr double settled_by_chance = 2;       // likewise
+constexpr double shift_pixels = 3;            // what images' places may be off by
+constexpr double as_good = 0.03;              // correlations that differ by less
 constexpr double correlation_nm = 4;          // of what simulations are off by
 constexpr double wide_correlations = 10;      // they are off as much over wide parts
 constexpr double edges_per_spacing = 3;       // triangles between bumps
 constexpr double bend_errors = 1;             // at a deviation from the mean, as much again
 constexpr double blur_error_nm2 = 4;          // secondaries escape from within 2 nm more or less
 constexpr std::uint64_t half_seed = 500'000;  // the random numbers of images' other halves
-constexpr double most_unexplained = 0.25;
+constexpr double most_unexplained = 0.3;
 constexpr double beside_nm = 40;                          // what images show, the mesh is fine, too
 constexpr double sheet_heights = 3, least_sheet_nm = 80;  // how far a sheet goes on
-constexpr int few_modes = 4;  // times as many electrons for the effects of a few modes
-constexpr int halvings = 6;   // of steps that make a mesh cut itself
+constexpr int few_modes = 4;            // times as many electrons for the effects of a few modes
+constexpr double pixels_of_few = 1024;  // of larger images each pixel tells less of these
+constexpr std::int64_t electrons_that_tell_places = 50;
+// Levenberg's and Marquardt's damping, in units of the prior's weight, by what a step gives of what
+// it promised.
+constexpr double first_damping = 4, more_damping = 5, good_step = 0.25, very_good_step = 0.7;
+constexpr int trials = 6;
 
 void check(const RefineJob& job) {
   if (job.material.name.empty())
@@ -128,19 +133,20 @@ class Refinement {
                           job_.bump_length_nm};
     begin(told_, "whole shape");
     const double blur_px = job_.start_error_nm / pixel;
-    take_modes(smooth_modes(base_, relief_box(box), SmoothKind::walls));
+    take_modes(smooth_modes(base_, relief_box(base_, box), SmoothKind::walls));
     for (const double share : {1.0, 0.0})
-      rounds(job_.smooth_rounds, prior, 1000, share * blur_px, few_modes * job_.effect_electrons);
+      rounds(job_.smooth_rounds, prior, 1000, share * blur_px, electrons_of_few());
     // The result so far is what bumps stand on.
     if (job_.bump_rounds > 0) {
       begin(told_, "bumps");
       base_ = moved(base_, modes_, amplitudes_);
-      std::vector<MeshMode> all = smooth_modes(base_, relief_box(seen_box()));
+      std::vector<MeshMode> all = smooth_modes(base_, relief_box(base_, seen_box()));
       std::vector<MeshMode> bumps = bump_modes(base_, in_view(), spacing);
       all.insert(all.end(), bumps.begin(), bumps.end());
       take_modes(std::move(all));
       rounds(job_.bump_rounds, prior, 100'000, 0, job_.effect_electrons);
     }
+    take_errors_from_images(prior);
     finish();
     return std::move(summary_);
   }
@@ -150,6 +156,15 @@ class Refinement {
     double out = HUGE_VAL;
     for (const RefinedView& v : views_) out = std::min(out, v.placement.pitch_x_nm);
     return out;
+  }
+
+  /// Per pixel, for the effects of a few modes of the whole shape.
+  std::int64_t electrons_of_few() const {
+    double pixels = 0;
+    for (const RefinedView& v : views_)
+      pixels = std::max(pixels, static_cast<double>(v.measured.size()));
+    const double times = few_modes * std::min(1.0, pixels_of_few / pixels);
+    return std::llround(std::max(1.0, times) * static_cast<double>(job_.effect_electrons));
   }
 
   /// A sheet goes on beside what images show, where simulations can still take it as a half-space:
@@ -163,8 +178,12 @@ class Refinement {
   }
 
   void render(const TriangleMesh& mesh, std::size_t v, std::uint64_t seed) {
+    render(mesh, v, seed, job_.electrons);
+  }
+
+  void render(const TriangleMesh& mesh, std::size_t v, std::uint64_t seed, std::int64_t electrons) {
     RefinedView& view = views_[v];
-    const std::int64_t half = std::max<std::int64_t>(1, job_.electrons / 2);
+    const std::int64_t half = std::max<std::int64_t>(1, electrons / 2);
     const auto simulate = [&](std::uint64_t own) {
       return images_.render(mesh, v, states_[v], half, own, job_.threads, {{}, told_.cancel});
     };
@@ -180,7 +199,9 @@ class Refinement {
 
   /// Gains and offsets; what pixels may be off by: noise, the simulation's chance, and what
   /// simulations are off by, which is alike in neighbours, so that each tells less.
-  void weigh(std::size_t v) {
+  void weigh(std::size_t v) { weigh(v, job_.model_error); }
+
+  void weigh(std::size_t v, double model_error) {
     RefinedView& view = views_[v];
     view.variance = Grid<double>(view.measured.width(), view.measured.height(), 1);
     fit_gain(view, states_[v]);
@@ -193,37 +214,52 @@ class Refinement {
     const double alike = std::max(1.0, 2 * M_PI * correlation_nm * correlation_nm /
                                            (view.placement.pitch_x_nm * view.placement.pitch_y_nm));
     for (std::size_t p = 0; p < levels.size(); ++p) {
-      const double off = job_.model_error * (levels[p] - middle);
+      const double off = model_error * (levels[p] - middle);
       view.variance.data()[p] = noise_[v].variance(levels[p]) + off * off * alike +
                                 (flat_noise_[v] ? s.gain * s.gain * chance_[v].data()[p] : 0);
     }
     double squares = 0;
     for (const double level : levels) squares += (level - middle) * (level - middle);
     view.wide_error =
-        job_.model_error *
+        model_error *
         std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, levels.size())));
     view.wide_nm = wide_correlations * correlation_nm;
-    view.bend_error = bend_errors * job_.model_error;
-    view.blur_error_nm2 = job_.model_error > 0 ? blur_error_nm2 : 0;
+    view.bend_error = bend_errors * model_error;
+    view.blur_error_nm2 = model_error > 0 ? blur_error_nm2 : 0;
     fit_gain(view, states_[v]);
   }
 
   /// Noise by what simulations leave has their chance in it.
-  double unexplained_of(std::size_t v) const {
+  double unexplained_of(std::size_t v, bool less_known_errors = false) const {
     return unexplained_share(views_[v], states_[v], noise_[v],
-                             flat_noise_[v] ? Grid<double>{} : chance_[v]);
+                             flat_noise_[v] ? Grid<double>{} : chance_[v], less_known_errors);
+  }
+
+  /// Errors of the shape by what simulations turn out to be off by, where that is more than was
+  /// expected of them.
+  void take_errors_from_images(const ModePrior& prior) {
+    bool more = false;
+    for (std::size_t v = 0; v < views_.size(); ++v) {
+      const double found = unexplained_of(v, true);
+      if (found > job_.model_error) weigh(v, found), more = true;
+    }
+    if (!more) return;
+    const ModeFit fit = fit_modes(views_, states_, amplitudes_, prior_covariance(modes_, prior));
+    summary_.covariance = fit.covariance;
+    information_ = fit.information;
   }
 
   /// Where each image looks: the best shift of it over what the start looks like.
   void find_places() {
+    const std::int64_t few = std::min(job_.electrons, electrons_that_tell_places);
     for (std::size_t v = 0; v < views_.size(); ++v) {
-      render(base_, v, job_.seed);
+      render(base_, v, job_.seed, few);
       const PlacedImage simulated{views_[v].placement, views_[v].simulated, {}};
       const std::vector<ImageShift> shifts = find_shifts(simulated, job_.images[v].image);
       if (!shifts.empty()) {
         const auto look_at = [&](double x_nm, double y_nm) {
           states_[v].shift_x_nm = x_nm, states_[v].shift_y_nm = y_nm;
-          render(base_, v, job_.seed);
+          render(base_, v, job_.seed, few);
           return correlation(views_[v]);
         };
         const ImageShift& best = shifts.front();
@@ -242,6 +278,7 @@ class Refinement {
                         "start's image is {:.2f}",
                         agreement),
             "Check `beam.tilt` and `beam.azimuth` of this image, its pixel size, and the start");
+      render(base_, v, job_.seed);
       weigh(v);
       summary_.images.push_back({});
       summary_.images[v].unexplained_before = unexplained_of(v);
@@ -267,39 +304,6 @@ class Refinement {
     amplitudes_.assign(modes_.size(), 0);
   }
 
-  /// The box of what rises from the ground, or is sunk into it, within what is seen: walls are near
-  /// its sides, so that polynomials of it move them.
-  Box relief_box(const Box& seen) const {
-    std::vector<std::pair<double, double>> areas;  // height, area of level triangles
-    for (const Triangle& t : base_.triangles) {
-      const Vec3 &a = base_.vertices_nm[t[0]], &b = base_.vertices_nm[t[1]],
-                 &c = base_.vertices_nm[t[2]];
-      const Vec3 normal = cross(b - a, c - a);
-      if (normal.z > 0.9 * length(normal)) areas.push_back({(a.z + b.z + c.z) / 3, normal.z});
-    }
-    std::ranges::sort(areas);
-    double all = 0, sum = 0, ground = 0;
-    for (const auto& [z, area] : areas) all += area;
-    for (const auto& [z, area] : areas) {
-      sum += area, ground = z;
-      if (sum > 0.5 * all) break;
-    }
-    Box inside, out;
-    const auto is_seen = [&](const Vec3& p) {
-      return p.x >= seen.lower_nm.x && p.x <= seen.upper_nm.x && p.y >= seen.lower_nm.y &&
-             p.y <= seen.upper_nm.y;
-    };
-    for (const Vec3& p : base_.vertices_nm)
-      if (is_seen(p)) inside.extend(p);
-    if (inside.empty()) return seen;
-    const double least = least_relief * inside.size_nm().z;
-    for (const Vec3& p : base_.vertices_nm)
-      if (is_seen(p) && std::abs(p.z - ground) > least) out.extend(p);
-    if (out.empty()) return inside;
-    out.lower_nm.z = inside.lower_nm.z, out.upper_nm.z = inside.upper_nm.z;
-    return out;
-  }
-
   /// Vertices that may move by themselves: those near what is seen.
   std::vector<bool> in_view() const {
     const Box box = seen_box();
@@ -315,21 +319,21 @@ class Refinement {
               std::int64_t electrons) {
     const std::vector<double> covariance = prior_covariance(modes_, prior);
     const std::uint64_t own = job_.seed + seed;
+    damping_ = 0;
     look(own);
     for (int round = 0; round < count; ++round) {
       const Watch watch = told_.watch(double(round) / count, double(round + 1) / count);
       // Each round has random numbers of its own, so that one whose step failed is not repeated.
-      const std::uint64_t of_round = own + 1 + 2 * static_cast<std::uint64_t>(round);
+      const std::uint64_t of_round = own + 1 + 4 * static_cast<std::uint64_t>(round);
       images_.add_effects(base_, modes_, amplitudes_, states_, electrons, of_round, watch, views_,
                           summary_.primaries);
       const std::vector<RefinedView> seen = blurred_views(blur_px);
       const ModeFit fit = fit_modes(seen, states_, amplitudes_, covariance);
       summary_.covariance = fit.covariance;
       information_ = fit.information;
-      const double taken = take(fit, covariance, own, blur_px);
-      // A step that had to be cut short has not arrived, unless chance alone can have stopped it.
-      settled_ = fit.move < (taken < cut_short ? settled_by_chance : settled) ||
-                 fit.step < settled_of_prior;
+      // A step that was not to be had has not arrived, unless chance alone can have stopped it.
+      const bool taken = take(fit, covariance, own, blur_px) && damping_ == 0;
+      settled_ = fit.move < (taken ? settled : settled_by_chance) || fit.step < settled_of_prior;
       if (settled_) break;
     }
   }
@@ -346,33 +350,42 @@ class Refinement {
     return out;
   }
 
-  /// Takes a step, or so much of it that the images agree better and the mesh does not cut itself;
-  /// the share that was taken.
-  double take(const ModeFit& fit, const std::vector<double>& prior, std::uint64_t seed,
-              double blur_px) {
+  /// Takes a step, damped until the images agree better and the mesh does not cut itself; whether
+  /// one was taken.
+  bool take(const ModeFit& undamped, const std::vector<double>& prior, std::uint64_t seed,
+            double blur_px) {
     const std::vector<double> before = amplitudes_;
     const std::vector<RefinedViewState> states = states_;
-    const std::vector<RefinedView> views = views_;
-    const double misfit_before = misfit(blurred_views(blur_px), states_, amplitudes_, prior);
-    double share = std::min(1.0, largest_step / std::max(fit.step, 1e-9));
-    for (int k = 0; k <= halvings; ++k, share *= 0.5) {
+    const std::vector<RefinedView> views = views_, seen = blurred_views(blur_px);
+    const double misfit_before = misfit(seen, states_, amplitudes_, prior);
+    for (int trial = 0; trial < trials; ++trial) {
+      const ModeFit fit =
+          damping_ > 0 ? fit_modes(seen, states, before, prior, damping_) : undamped;
+      const double share = std::min(1.0, largest_step / std::max(fit.step, 1e-9));
       for (std::size_t m = 0; m < before.size(); ++m)
         amplitudes_[m] = before[m] + share * (fit.amplitudes_nm[m] - before[m]);
       const TriangleMesh now = moved(base_, modes_, amplitudes_);
       held_ = !find_self_intersections(now, {.limit = 1, .threads = job_.threads}).pairs.empty();
-      if (held_) continue;
-      for (std::size_t v = 0; v < views_.size(); ++v) {
-        states_[v] = part_way(states[v], fit.views[v], share);
-        render(now, v, seed);  // the weights stay as before
-        fit_gain(views_[v], states_[v]);
+      double more = HUGE_VAL;
+      if (!held_) {
+        for (std::size_t v = 0; v < views_.size(); ++v) {
+          states_[v] = part_way(states[v], fit.views[v], share);
+          render(now, v, seed);  // the weights stay as before
+          fit_gain(views_[v], states_[v]);
+        }
+        more = misfit(blurred_views(blur_px), states_, amplitudes_, prior) - misfit_before;
       }
-      if (misfit(blurred_views(blur_px), states_, amplitudes_, prior) < misfit_before) {
-        look(seed);
-        return share;
+      if (more > good_step * fit.promised)
+        damping_ = std::max(first_damping, damping_ * more_damping);
+      else if (more < very_good_step * fit.promised)
+        damping_ = damping_ > first_damping ? damping_ / more_damping : 0;
+      if (more < 0) {
+        for (std::size_t v = 0; v < views_.size(); ++v) weigh(v);
+        return true;
       }
     }
     amplitudes_ = before, states_ = states, views_ = views;
-    return 0;
+    return false;
   }
 
   static RefinedViewState part_way(RefinedViewState a, const RefinedViewState& b, double share) {
@@ -411,6 +424,11 @@ class Refinement {
       const double told = std::sqrt(information_[view][k]);
       for (const MeshMode::Move& move : modes_[k].moves) at[move.vertex] += told * length(move.by);
     }
+    // A bump reaches round corners; what it shows there is not of what is hidden.
+    const std::vector<bool> in_sight =
+        vertices_in_sight(summary_.mesh, images_.seen(summary_.mesh, view, states_[view]));
+    for (std::size_t p = 0; p < at.size(); ++p)
+      if (!in_sight[p]) at[p] = 0;
     summary_.sensitivity.push_back(std::move(at));
   }
 
@@ -475,6 +493,7 @@ class Refinement {
   std::vector<double> amplitudes_;
   std::vector<std::vector<double>> information_;
   bool settled_ = false, held_ = false;
+  double damping_ = 0;
   RefineSummary summary_;
 };
 

@@ -332,7 +332,8 @@ void fit_gain(const RefinedView& view, RefinedViewState& state) {
 
 ModeFit fit_modes(const std::vector<RefinedView>& views,
                   const std::vector<RefinedViewState>& states,
-                  const std::vector<double>& amplitudes, const std::vector<double>& prior) {
+                  const std::vector<double>& amplitudes, const std::vector<double>& prior,
+                  double damping) {
   const std::size_t modes = amplitudes.size();
   if (prior.size() != modes * modes || states.size() != views.size())
     throw InvalidInput("modes", "their prior or the states of views do not match",
@@ -367,6 +368,7 @@ ModeFit fit_modes(const std::vector<RefinedView>& views,
   // noise of the image would.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(root.transpose() * told * root);
   const Eigen::MatrixXd spread = root * parts.eigenvectors();
+  const Eigen::VectorXd held = parts.eigenvectors().transpose() * center;
   const Eigen::VectorXd with_chance = (spread.transpose() * seen * spread).diagonal();
   Eigen::VectorXd to_be_told = spread.transpose() * pull, variances(all);
   for (Eigen::Index k = 0; k < all; ++k) {
@@ -375,8 +377,13 @@ ModeFit fit_modes(const std::vector<RefinedView>& views,
     variances[k] = 1 / (1 + share * real);
     to_be_told[k] *= share;
   }
-  const Eigen::VectorXd change =
-      spread * variances.asDiagonal() * (to_be_told + parts.eigenvectors().transpose() * center);
+  Eigen::VectorXd along(all);  // the step, in these directions
+  for (Eigen::Index k = 0; k < all; ++k) {
+    const double curvature = 1 / variances[k] + damping, gradient = to_be_told[k] + held[k];
+    along[k] = gradient / curvature;
+    out.promised += along[k] * along[k] / variances[k] - 2 * along[k] * gradient;
+  }
+  const Eigen::VectorXd change = spread * along;
   const Eigen::MatrixXd covariance =
       spread.topRows(size) * variances.asDiagonal() * spread.topRows(size).transpose();
   out.amplitudes_nm = amplitudes;

@@ -238,6 +238,38 @@ TEST(Misfit, IsLeastAtTheFit) {
   }
 }
 
+TEST(FitModes, StepsKeepWhatTheyPromiseAndDampingShortensThem) {
+  RefinedView view = made_view({1, -2, 0.5, 3, 0, -1}, 1, 3);
+  const std::vector<RefinedViewState> start{{80, 12}};
+  const std::vector<double> begin{0.2, 0.4, -0.3, 0, 1, 0};
+  view.shift_error_nm = 1e-6;
+  const auto after = [&](const ModeFit& fit, double share) {
+    RefinedView there = view;
+    std::vector<double> amplitudes = begin;
+    RefinedViewState state = start[0];
+    state.gain += share * (fit.views[0].gain - state.gain);
+    state.offset += share * (fit.views[0].offset - state.offset);
+    for (std::size_t k = 0; k < modes; ++k) {
+      const double by = share * (fit.amplitudes_nm[k] - begin[k]);
+      amplitudes[k] += by;
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) there.simulated(x, y) += by * effect(k, x, y);
+    }
+    return misfit({there}, {state}, amplitudes, wide_prior(2));
+  };
+  double shorter = 10, less = 1e9;
+  for (const double damping : {0.0, 10.0, 1000.0}) {
+    const ModeFit fit = fit_modes({view}, start, begin, wide_prior(2), damping);
+    EXPECT_NEAR((after(fit, 1) - after(fit, 0)) / fit.promised, 1, 0.02) << damping;
+    EXPECT_LT(-fit.promised, less);
+    EXPECT_LT(fit.step, shorter);
+    shorter = fit.step, less = -fit.promised;
+  }
+  const ModeFit whole = fit_modes({view}, start, begin, wide_prior(2)),
+                part = fit_modes({view}, start, begin, wide_prior(2), 10);
+  EXPECT_EQ(whole.covariance, part.covariance);
+}
+
 TEST(FitModes, ChanceInEffectsIsNoInformation) {
   RefinedView view = made_view(nothing, 5, 1);
   NormalNumbers normal(3, 3);

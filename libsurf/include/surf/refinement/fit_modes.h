@@ -63,8 +63,9 @@ struct ModeFit {
   /// What each view alone tells of each mode: one over the variance that its amplitude would have
   /// if all else were known, 1/nm^2.
   std::vector<std::vector<double>> information;
-  double step = 0;  ///< the largest change of an amplitude over its prior deviation
-  double move = 0;  ///< likewise over its deviation after the fit
+  double step = 0;      ///< the largest change of an amplitude over its prior deviation
+  double move = 0;      ///< likewise over its deviation after the fit
+  double promised = 0;  ///< what the step changes `misfit` by, to the second order; not above 0
 };
 
 /// Gain and offset of an image by the weighted least squares of its pixels.
@@ -82,11 +83,13 @@ RefinedView blurred(const RefinedView& view, double sigma_px);
 /// One step of Gauss and Newton: the likeliest amplitudes, gains, offsets, shifts and tilts of all
 /// images to the first order about the present ones. `amplitudes_nm` are those at which the images
 /// were simulated; `prior` their covariance beforehand. What chance makes of an effect does not
-/// count: only what both simulations of it have in common. Throws InvalidInput
-/// for sizes that do not match.
+/// count: only what both simulations of it have in common. `damping` (>= 0, in units of the prior's
+/// weight; Levenberg 1944, Marquardt 1963) shortens the step, the less an image tells of a
+/// direction the more; not the covariance. Throws InvalidInput for sizes that do not match.
 ModeFit fit_modes(const std::vector<RefinedView>& views,
                   const std::vector<RefinedViewState>& states,
-                  const std::vector<double>& amplitudes_nm, const std::vector<double>& prior);
+                  const std::vector<double>& amplitudes_nm, const std::vector<double>& prior,
+                  double damping = 0);
 
 /// Minus twice the log of the posterior density, but for a constant and without the simulations'
 /// chance: what `fit_modes` makes small.

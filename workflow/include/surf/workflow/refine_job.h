@@ -67,7 +67,7 @@ struct RefineSummary {
   std::vector<double> deviation_nm;     ///< of each vertex, along its normal
   std::vector<double> displacement_nm;  ///< from `before`, along the normal
   /// What each view alone tells of the surface at each vertex: one over the standard error of a
-  /// bump there if all else were known, 1/nm.
+  /// bump there if all else were known, 1/nm; 0 where its beam does not reach.
   std::vector<std::vector<double>> sensitivity;
   std::vector<RefinedImage> images;
   std::vector<MeshMode> modes;     ///< of the last rounds
