@@ -121,6 +121,21 @@ TEST_F(ProfileJobTest, AScanTellsTheHeight) {
   EXPECT_THROW(run(job_), InvalidInput);
 }
 
+// Two flanks of the tip meet in each gap.
+TEST_F(ProfileJobTest, AScanWhoseTipDoesNotReachTheGroundTellsNoHeight) {
+  HeightField scan{{2, 2, 0, 0}, Grid<double>(90, 40)};
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 90; ++x) {
+      const double from_middle = 2 * std::abs(x % 30 - 15);
+      scan.z_nm(x, y) = std::min(100.0, 40 + 4 * from_middle) + 0.1 * ((x * 7 + y * 3) % 5);
+    }
+  job_.scan = scan;
+  job_.height_nm = 0;
+  job_.folder.clear();
+  EXPECT_THAT([&] { run(job_); },
+              ThrowsMessage<InvalidInput>(HasSubstr("does not reach the ground")));
+}
+
 TEST_F(ProfileJobTest, FurtherImagesHaveTheirOwnTiltsAndSignals) {
   job_.electrons = 10, job_.middle_electrons = 10;
   job_.folder.clear();

@@ -175,7 +175,7 @@ void turn_surface(ProfileSummary& s) {
 Measured wall_height(const HeightField& scan) {
   constexpr int farthest = 2;  // samples, from what is between the levels
   constexpr std::ptrdiff_t fewest = 16;
-  constexpr double level_share = 0.15;
+  constexpr double level_share = 0.15, least_of_level = 1.5;
   std::vector<double> sorted;
   for (std::size_t i = 0; i < scan.z_nm.size(); ++i)
     if (scan.valid.includes(i)) sorted.push_back(scan.z_nm.data()[i]);
@@ -186,6 +186,18 @@ Measured wall_height(const HeightField& scan) {
     return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
   };
   const double low = at(0.1), high = at(0.9), band = level_share * (high - low);
+  // Between steep sides that meet heights are spread alike; a level has more of them than what is
+  // above it.
+  const auto between = [&](double from, double to) {
+    return static_cast<double>(std::ranges::lower_bound(sorted, to) -
+                               std::ranges::lower_bound(sorted, from));
+  };
+  if (between(low - band, low + band) < least_of_level * between(low + band, low + 3 * band))
+    throw InvalidInput("AFM scan",
+                       "its lowest places are not level: where the tip does not reach the ground, "
+                       "walls are higher than the scan shows",
+                       "Say `profile.height` and `profile.height_error`, or give the scan of a "
+                       "sharper tip");
   const auto near = [&](double level, int away) {
     Mask mask(scan.z_nm.width(), scan.z_nm.height());
     for (int y = 0; y < mask.height(); ++y)
