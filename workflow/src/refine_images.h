@@ -31,9 +31,9 @@ class RefineImages {
   /// What the middles of pixels see of the mesh; NaN where they see nothing.
   Grid<Vec3> seen(const TriangleMesh& mesh, std::size_t view, const RefinedViewState& state) const;
 
-  /// What modes change in a view, by two simulations with the seeds `seed` and `seed` + 1, each of
-  /// a step to either side, `electrons` per pixel in all four images together; and tilts of the
-  /// beam, where they are fitted. `counted` adds up primaries.
+  /// What modes change in a view, by two simulations, each of a step to either side, `electrons`
+  /// per pixel on average in all these images together, with seeds from `seed` to `seed` + 3; and
+  /// tilts of the beam, where they are fitted. `counted` adds up primaries of the modes.
   void add_effects(const TriangleMesh& base, const std::vector<MeshMode>& modes,
                    const std::vector<double>& amplitudes_nm,
                    const std::vector<RefinedViewState>& states, std::int64_t electrons,
