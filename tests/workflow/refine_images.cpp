@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <vector>
 
+#include "profile_signals.h"
 #include "surf/io/sim/materials.h"
 #include "surf/mc/simulate.h"
 #include "surf/profile/feature_shape.h"
@@ -52,7 +54,7 @@ Windows long_simulation(const TriangleMesh& mesh, std::uint64_t seed) {
   scan.pixel_x_nm = scan.pixel_y_nm = pixel_nm;
   mc::SimulationOptions options;
   options.method = mc::Method::direct;
-  options.budget = mc::ElectronsPerPixel{800};
+  options.budget = mc::ElectronsPerPixel{1200};
   options.seed = seed;
   const mc::SimulationResult done = mc::simulate(mc::Scene(specimen, beam, scan), options, {});
   Windows out;
@@ -68,25 +70,26 @@ Windows long_simulation(const TriangleMesh& mesh, std::uint64_t seed) {
 TEST(RefineImages, EffectsAreThoseThatLongSimulationsDifferBy) {
   const RefineJob job = seen_from_one_side();
   const test::TemporaryFolder cascades;
-  CachedLibraries libraries(cascades.path());
-  const RefineImages images(job, libraries);
+  CachedLibraries cached(cascades.path());
   const TriangleMesh line = feature_mesh({FeatureKind::line, 40, 0, {30, 95, 1, 1}}, 300);
   std::vector<MeshMode> modes =
       smooth_modes(line, {{-25, -10, 0}, {25, 10, 30}}, SmoothKind::walls);
   modes.resize(3);  // along x: the line leans, grows wider, tapers
 
-  constexpr int repeats = 6;
+  constexpr std::size_t repeats = 10;
   std::array<Windows, 3> effects;
-  for (int n = 0; n < repeats; ++n) {
+  std::array<std::array<Windows, 3>, repeats> each;
+  for (std::size_t n = 0; n < repeats; ++n) {
     std::vector<RefinedView> views(1);
     views[0].measured = Grid<double>(columns, rows, 0);
     std::int64_t counted = 0;
-    images.add_effects(line, modes, {0, 0, 0}, {{}}, 80, 1000 + 10 * static_cast<unsigned>(n), {},
-                       views, counted);
+    SharedLibraries libraries(cached, job.threads);  // one for all images, as in a refinement
+    const RefineImages images(job, libraries);
+    images.add_effects(line, modes, {0, 0, 0}, {{}}, 80, 1000 + 10 * n, {}, views, counted);
     EXPECT_GT(counted, 0);
     for (std::size_t m = 0; m < modes.size(); ++m) {
       const ModeEffect& e = views[0].effects[m];
-      Windows once;
+      Windows& once = each[n][m];
       for (std::size_t i = 0; i < e.pixels.size(); ++i)
         once.sum[e.pixels[i] % columns / window] += 0.5 * (e.first[i] + e.second[i]);
       for (std::size_t k = 0; k < once.sum.size(); ++k)
@@ -96,7 +99,8 @@ TEST(RefineImages, EffectsAreThoseThatLongSimulationsDifferBy) {
   }
 
   constexpr double step_nm = 2;  // of the effects, too
-  double chi_squared = 0, product = 0, squares = 0;
+  double chi_squared = 0, squares = 0, others_variance = 0;
+  std::array<double, repeats> products{};
   for (std::size_t m = 0; m < modes.size(); ++m) {
     const auto moved_by = [&](double amplitude, std::uint64_t seed) {
       std::vector<double> amplitudes(modes.size(), 0);
@@ -111,12 +115,19 @@ TEST(RefineImages, EffectsAreThoseThatLongSimulationsDifferBy) {
                          (repeats * (repeats - 1.0)),
                    others = (before.variance[k] + after.variance[k]) / (4 * step_nm * step_nm);
       chi_squared += (effect - wanted) * (effect - wanted) / (own + others);
-      product += effect * wanted, squares += wanted * wanted - others;
+      for (std::size_t n = 0; n < repeats; ++n) products[n] += each[n][m].sum[k] * wanted;
+      squares += wanted * wanted - others, others_variance += wanted * wanted * others;
     }
   }
-  // A library's chance is nearly nothing.
   EXPECT_NEAR(chi_squared / static_cast<double>(modes.size() * effects[0].sum.size()), 1, 0.7);
-  EXPECT_NEAR(product / squares, 1, 0.04);
+  // What a library makes of chance is shared by all windows: the repeats tell it, windows do not.
+  double size = 0, spread = 0;
+  for (const double p : products) size += p / squares / repeats;
+  for (const double p : products) spread += std::pow(p / squares - size, 2);
+  const double error =
+      std::sqrt(spread / (repeats * (repeats - 1.0)) + others_variance / (squares * squares));
+  EXPECT_LT(error, 0.025);
+  EXPECT_NEAR(size, 1, 4 * error);
 }
 
 // A roof over level ground, seen from above: its underside is not, nor is the ground below.
