@@ -101,6 +101,12 @@ TEST_F(ProfileJobTest, MeasuresLinesAndSaysHowWell) {
   const auto middle = static_cast<int>(s.fit.edges()[0].smooth_nm[12] / pixel_nm + 0.5);
   EXPECT_GT(s.deviation_nm(middle, 12), 1);
   EXPECT_LT(s.deviation_nm(middle + 10, 12), 0.01);
+  // The image cuts off two lines, of which it shows a wall each, at 80 nm from its middle.
+  for (const int end : {0, 89}) EXPECT_EQ(s.surface.z_nm(end, 12), 30) << end;
+  for (const int wall : {4, 85}) {
+    EXPECT_GT(s.deviation_nm(wall, 12), 1) << wall;
+    EXPECT_LT(s.deviation_nm(wall, 12), 20) << wall;
+  }
 }
 
 TEST_F(ProfileJobTest, AScanTellsTheHeight) {

@@ -13,6 +13,7 @@
 #include "profile_output.h"
 #include "profile_signals.h"
 #include "profile_surface.h"
+#include "shading_doubt.h"
 #include "surf/core/error.h"
 #include "surf/core/units.h"
 #include "surf/io/plot.h"
@@ -193,6 +194,16 @@ std::vector<std::string> reasons_of(const ProfileJob& job, const ProfileSummary&
   return reasons;
 }
 
+/// Where all images are from above.
+void doubt_height(const ProfileJob& job, const std::vector<ProfileView>& views, ProfileFit& fit) {
+  if (std::ranges::any_of(views, [](const ProfileView& v) { return v.tilt_deg > 0; })) return;
+  for (auto* wall : {&fit.left, &fit.right}) {
+    Measured& height = (*wall)[profile_height];
+    height.standard_error =
+        doubted_error(height.standard_error, job.height_error_nm, shading_doubt * height.value);
+  }
+}
+
 /// What is fitted of an image without a hole.
 ProfileSight sight_of(const ProfileJob& job, const PlacedImage& image, const ProfileView& view,
                       const std::vector<ImageEdge>& edges) {
@@ -214,10 +225,12 @@ struct HoleRim {
 HoleRim rim_of_hole(const PlacedImage& image, double threshold) {
   HoleRim out{find_hole(image), {}};
   out.threshold = find_edges(unrolled(image, out.hole), FeatureKind::hole, threshold);
-  auto& [edges, places, rows, pitch] = out.threshold;
+  auto& [edges, places, rows, rims, cut_off, pitch] = out.threshold;
   const auto nearest = std::ranges::min_element(
       edges, {}, [&](const ImageEdge& e) { return std::abs(e.place_nm - out.hole.radius_nm); });
   places = {places[static_cast<std::size_t>(nearest - edges.begin())]};
+  rims = {rims[static_cast<std::size_t>(nearest - edges.begin())]};
+  cut_off.clear();
   edges = {*nearest};
   out.hole.radius_nm = edges.front().place_nm;
   return out;
@@ -335,6 +348,7 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
   }
   for (const SightFit& fit : s.fit.sights)
     s.discrepancy_share = std::max(s.discrepancy_share, fit.discrepancy_share);
+  doubt_height(job, views, s.fit);
   add_surface(image, s);
   if (job.along_x && job.kind != FeatureKind::hole) turn_surface(s);
   // The wall at the left of a gap has its ground at the right.

@@ -183,6 +183,30 @@ std::vector<std::vector<Rim>> features_of(const std::vector<Rim>& all, FeatureKi
   return out;
 }
 
+/// The brightest place of a rim, between columns.
+double top_of(const Rim& rim, const std::vector<double>& y) {
+  const auto i = static_cast<std::size_t>(rim.top);  // never the first or last
+  const double bend = y[i - 1] - 2 * y[i] + y[i + 1];
+  return rim.top + (bend < 0 ? 0.5 * (y[i - 1] - y[i + 1]) / bend : 0);
+}
+
+/// Rims beyond the first and the last feature, as long as material and ground take turns.
+std::vector<Rim> cut_off_rims(const std::vector<Rim>& rims,
+                              const std::vector<std::vector<Rim>>& features) {
+  std::vector<Rim> out;
+  const auto add = [&](auto begin, auto end, Rim last, bool left) {
+    for (auto rim = begin; rim != end; ++rim) {
+      if (left ? rim->top >= last.top : rim->top <= last.top) continue;
+      if (rim->material_right == last.material_right) break;
+      out.push_back(last = *rim);
+    }
+  };
+  add(rims.rbegin(), rims.rend(), features.front().front(), true);
+  std::ranges::reverse(out);
+  add(rims.begin(), rims.end(), features.back().back(), false);
+  return out;
+}
+
 /// See ThresholdEdges; in columns.
 double pitch_of(const std::vector<Rim>& rims, const std::vector<double>& y, double threshold) {
   constexpr double most_uneven = 1.15;
@@ -214,6 +238,9 @@ ThresholdEdges find_edges(const PlacedImage& image, FeatureKind kind, double thr
   const auto features = features_of(rims, kind, mean);
   if (kind == FeatureKind::line || kind == FeatureKind::trench)
     out.pitch_nm = image.pitch_x_nm * pitch_of(rims, mean, threshold);
+  const auto placed = [&](const Rim& rim) {
+    return WallRim{rim.material_right, image.x_nm(0) + top_of(rim, mean) * image.pitch_x_nm};
+  };
   for (std::size_t f = 0; f < features.size(); ++f)
     for (const Rim& rim : features[f]) {
       const Flank flank{rim.top, rim.material_right ? rim.left : rim.right, rim.left, rim.right};
@@ -223,6 +250,7 @@ ThresholdEdges find_edges(const PlacedImage& image, FeatureKind kind, double thr
       out.edges.push_back({static_cast<int>(f), rim.material_right,
                            image.x_nm(0) + column * image.pitch_x_nm, image.x_nm(rim.left),
                            image.x_nm(rim.right)});
+      out.rims.push_back(placed(rim));
     }
   if (out.edges.empty())
     throw InvalidInput("SEM image",
@@ -235,6 +263,7 @@ ThresholdEdges find_edges(const PlacedImage& image, FeatureKind kind, double thr
                        kind == FeatureKind::hole
                            ? "Check what the image shows"
                            : "Check what the image shows; lines must run along y");
+  for (const Rim& rim : cut_off_rims(rims, features)) out.cut_off.push_back(placed(rim));
   out.places_nm.resize(out.edges.size());
   for (int y = 0; y < image.values.height(); ++y) {
     out.rows_nm.push_back(image.y_nm(y));

@@ -50,7 +50,7 @@ struct ProfileFitOptions {
   /// width follows from the edges' places.
   ProfileNumbers prior_mean{}, prior_deviation{};
   /// What the simulation may be off by: a share of the signal's contrast, correlated over some nm,
-  /// and half of it over ten times as many.
+  /// as much again over ten times as many.
   double model_error = 0.08, model_error_nm = 4;
   Watch watch;
 };

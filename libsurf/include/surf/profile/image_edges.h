@@ -16,12 +16,21 @@ struct ImageEdge {
   double from_nm = 0, to_nm = 0;  ///< the part of the image that is this edge's, along x
 };
 
+/// The bright rim of a wall in an image.
+struct WallRim {
+  bool material_right = true;  ///< see ImageEdge
+  double top_nm = 0;           ///< x of its brightest place, by the mean of all rows
+};
+
 /// Edges of an image by the threshold method: of each bright rim, where the flank on the ground's
 /// side crosses this share of the way from the ground's level to the rim's.
 struct ThresholdEdges {
   std::vector<ImageEdge> edges;                ///< from left to right, by the mean of all rows
   std::vector<std::vector<double>> places_nm;  ///< of each edge, by row; NaN where a row has none
   std::vector<double> rows_nm;                 ///< y of the rows
+  std::vector<WallRim> rims;                   ///< of each edge
+  /// Rims of walls that belong to no whole feature, because the image cuts it off.
+  std::vector<WallRim> cut_off;
   /// Distance at which walls with the ground at one side repeat, features that the image cuts off
   /// included; 0: they do not.
   double pitch_nm = 0;
