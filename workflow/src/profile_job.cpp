@@ -194,13 +194,22 @@ std::vector<std::string> reasons_of(const ProfileJob& job, const ProfileSummary&
   return reasons;
 }
 
-/// Where all images are from above.
+/// Where all images are from above. What an image tells well is how far flanks run along x: another
+/// height goes with another angle.
 void doubt_height(const ProfileJob& job, const std::vector<ProfileView>& views, ProfileFit& fit) {
   if (std::ranges::any_of(views, [](const ProfileView& v) { return v.tilt_deg > 0; })) return;
   for (auto* wall : {&fit.left, &fit.right}) {
-    Measured& height = (*wall)[profile_height];
+    Measured &height = (*wall)[profile_height], &angle = (*wall)[profile_angle];
+    const double before = height.standard_error;
     height.standard_error =
-        doubted_error(height.standard_error, job.height_error_nm, shading_doubt * height.value);
+        doubted_error(before, job.height_error_nm, shading_doubt * height.value);
+    const double more =
+                     std::sqrt(std::max(0.0, std::pow(height.standard_error, 2) - before * before)),
+                 a = angle.value * degrees_to_radians;
+    if (angle.standard_error > 0)
+      angle.standard_error =
+          std::hypot(angle.standard_error, std::abs(std::sin(a) * std::cos(a)) * more /
+                                               height.value / degrees_to_radians);
   }
 }
 
