@@ -9,18 +9,29 @@
 namespace surf::workflow {
 namespace {
 
-TEST(ShadingDoubt, AddsToWhatTheDataTold) {
-  constexpr double none = std::numeric_limits<double>::infinity();
-  EXPECT_NEAR(doubted_error(3, none, 4), 5, 1e-12);
-  // Data of 6, a prior of 20, a doubt of 8: data of 10.
-  const auto both = [](double a, double b) { return 1 / std::hypot(1 / a, 1 / b); };
-  EXPECT_NEAR(doubted_error(both(6, 20), 20, 8), both(10, 20), 1e-12);
+/// Two measurements of one number, weighted.
+Measured both(const Measured& a, const Measured& b) {
+  const double wa = std::pow(a.standard_error, -2), wb = std::pow(b.standard_error, -2);
+  return {(wa * a.value + wb * b.value) / (wa + wb), 1 / std::sqrt(wa + wb)};
+}
+
+TEST(ShadingDoubt, MakesWhatTheDataToldCountLess) {
+  const Measured alone = doubted({70, 3}, {0, std::numeric_limits<double>::infinity()}, 4);
+  EXPECT_NEAR(alone.value, 70, 1e-12);
+  EXPECT_NEAR(alone.standard_error, 5, 1e-12);
+  // Data of 6, a doubt of 8: data of 10.
+  const Measured prior{100, 20}, less = doubted(both({70, 6}, prior), {100, 20}, 8),
+                                 wanted = both({70, 10}, prior);
+  EXPECT_NEAR(less.value, wanted.value, 1e-9);
+  EXPECT_NEAR(less.standard_error, wanted.standard_error, 1e-9);
 }
 
 TEST(ShadingDoubt, LeavesWhatTheDataDidNotTell) {
-  EXPECT_EQ(doubted_error(0, 0, 10), 0);     // held
-  EXPECT_EQ(doubted_error(20, 20, 10), 20);  // the prior's alone
-  EXPECT_LT(doubted_error(0.5, 0.51, 10), 0.51);
+  EXPECT_EQ(doubted({30, 0}, {30, 0}, 10).standard_error, 0);  // held
+  const Measured prior_alone = doubted({30, 20}, {30, 20}, 10);
+  EXPECT_EQ(prior_alone.value, 30);
+  EXPECT_EQ(prior_alone.standard_error, 20);
+  EXPECT_LT(doubted({30, 0.5}, {30, 0.51}, 10).standard_error, 0.51);
 }
 
 }  // namespace

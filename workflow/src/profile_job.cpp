@@ -197,19 +197,30 @@ std::vector<std::string> reasons_of(const ProfileJob& job, const ProfileSummary&
 /// Where all images are from above. What an image tells well is how far flanks run along x: another
 /// height goes with another angle.
 void doubt_height(const ProfileJob& job, const std::vector<ProfileView>& views, ProfileFit& fit) {
-  if (std::ranges::any_of(views, [](const ProfileView& v) { return v.tilt_deg > 0; })) return;
+  if (!(job.height_error_nm > 0) ||
+      std::ranges::any_of(views, [](const ProfileView& v) { return v.tilt_deg > 0; }))
+    return;
   for (auto* wall : {&fit.left, &fit.right}) {
-    Measured &height = (*wall)[profile_height], &angle = (*wall)[profile_angle];
-    const double before = height.standard_error;
-    height.standard_error =
-        doubted_error(before, job.height_error_nm, shading_doubt * height.value);
-    const double more =
-                     std::sqrt(std::max(0.0, std::pow(height.standard_error, 2) - before * before)),
-                 a = angle.value * degrees_to_radians;
+    auto doubt = *wall;
+    Measured &height = doubt[profile_height], &angle = doubt[profile_angle];
+    const Measured before = height;
+    height = doubted(before, {job.height_nm, job.height_error_nm}, shading_doubt * job.height_nm);
+    if (!(height.value > 0)) continue;
+    const double flank_nm = before.value / std::tan(angle.value * degrees_to_radians),
+                 a = std::atan2(height.value, flank_nm),
+                 more = std::sqrt(std::max(
+                     0.0, std::pow(height.standard_error, 2) - std::pow(before.standard_error, 2)));
     if (angle.standard_error > 0)
-      angle.standard_error =
-          std::hypot(angle.standard_error, std::abs(std::sin(a) * std::cos(a)) * more /
-                                               height.value / degrees_to_radians);
+      angle = {a / degrees_to_radians,
+               std::hypot(angle.standard_error, std::abs(std::sin(a) * std::cos(a)) * more /
+                                                    height.value / degrees_to_radians)};
+    try {
+      wall_profile(
+          {height.value, angle.value, doubt[profile_top].value, doubt[profile_foot].value});
+    } catch (const InvalidInput&) {  // no wall has such corners
+      height.value = before.value, angle.value = (*wall)[profile_angle].value;
+    }
+    *wall = doubt;
   }
 }
 

@@ -5,12 +5,15 @@
 
 namespace surf::workflow {
 
-double doubted_error(double fitted, double prior_deviation, double doubt) {
-  if (!(prior_deviation > 0) || !(fitted > 0)) return fitted;
-  const double known = 1 / (prior_deviation * prior_deviation),
-               told = 1 / (fitted * fitted) - known;  // by the data
+Measured doubted(const Measured& fitted, const NumberPrior& prior, double doubt) {
+  if (!(prior.deviation > 0) || !(fitted.standard_error > 0)) return fitted;
+  const double known = 1 / (prior.deviation * prior.deviation),
+               both = 1 / (fitted.standard_error * fitted.standard_error),
+               told = both - known;  // by the data
   if (!(told > 0)) return fitted;
-  return 1 / std::sqrt(known + 1 / (1 / told + doubt * doubt));
+  const double by_data = (fitted.value * both - prior.mean * known) / told,
+               less = 1 / (1 / told + doubt * doubt);
+  return {(prior.mean * known + by_data * less) / (known + less), 1 / std::sqrt(known + less)};
 }
 
 }  // namespace surf::workflow
