@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -32,6 +33,29 @@ TEST(ShadingDoubt, LeavesWhatTheDataDidNotTell) {
   EXPECT_EQ(prior_alone.value, 30);
   EXPECT_EQ(prior_alone.standard_error, 20);
   EXPECT_LT(doubted({30, 0.5}, {30, 0.51}, 10).standard_error, 0.51);
+}
+
+TEST(ShadingDoubt, AWallThatIsHigherRunsAsFar) {
+  const std::array<Measured, profile_numbers> fitted{{{70, 1}, {80, 8}, {84, 0.6}, {3, 2}, {3, 2}}};
+  const auto out = doubted_height(fitted, {100, 20});
+  const auto flank = [](const auto& wall) {
+    return wall[profile_height].value / std::tan(wall[profile_angle].value * std::acos(-1) / 180);
+  };
+  EXPECT_GT(out[profile_height].value, 85);
+  EXPECT_LT(out[profile_height].value, 95);
+  EXPECT_GT(out[profile_height].standard_error, 13);
+  EXPECT_LT(out[profile_height].standard_error, 20);
+  EXPECT_NEAR(flank(out), flank(fitted), 1e-9);
+  EXPECT_GT(out[profile_angle].standard_error, 0.8);
+  EXPECT_EQ(out[profile_width].value, 70);
+  // A height that is held, and corners for which no other wall is there.
+  EXPECT_EQ(doubted_height(fitted, {80, 0})[profile_height].standard_error, 8);
+  auto round = fitted;
+  round[profile_height].value = 130;
+  round[profile_top].value = round[profile_foot].value = 68;
+  const auto kept = doubted_height(round, {60, 20});
+  EXPECT_EQ(kept[profile_height].value, 130);
+  EXPECT_GT(kept[profile_height].standard_error, 9);
 }
 
 }  // namespace

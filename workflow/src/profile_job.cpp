@@ -194,36 +194,6 @@ std::vector<std::string> reasons_of(const ProfileJob& job, const ProfileSummary&
   return reasons;
 }
 
-/// Where all images are from above. What an image tells well is how far flanks run along x: another
-/// height goes with another angle.
-void doubt_height(const ProfileJob& job, const std::vector<ProfileView>& views, ProfileFit& fit) {
-  if (!(job.height_error_nm > 0) ||
-      std::ranges::any_of(views, [](const ProfileView& v) { return v.tilt_deg > 0; }))
-    return;
-  for (auto* wall : {&fit.left, &fit.right}) {
-    auto doubt = *wall;
-    Measured &height = doubt[profile_height], &angle = doubt[profile_angle];
-    const Measured before = height;
-    height = doubted(before, {job.height_nm, job.height_error_nm}, shading_doubt * job.height_nm);
-    if (!(height.value > 0)) continue;
-    const double flank_nm = before.value / std::tan(angle.value * degrees_to_radians),
-                 a = std::atan2(height.value, flank_nm),
-                 more = std::sqrt(std::max(
-                     0.0, std::pow(height.standard_error, 2) - std::pow(before.standard_error, 2)));
-    if (angle.standard_error > 0)
-      angle = {a / degrees_to_radians,
-               std::hypot(angle.standard_error, std::abs(std::sin(a) * std::cos(a)) * more /
-                                                    height.value / degrees_to_radians)};
-    try {
-      wall_profile(
-          {height.value, angle.value, doubt[profile_top].value, doubt[profile_foot].value});
-    } catch (const InvalidInput&) {  // no wall has such corners
-      height.value = before.value, angle.value = (*wall)[profile_angle].value;
-    }
-    *wall = doubt;
-  }
-}
-
 /// What is fitted of an image without a hole.
 ProfileSight sight_of(const ProfileJob& job, const PlacedImage& image, const ProfileView& view,
                       const std::vector<ImageEdge>& edges) {
@@ -245,11 +215,10 @@ struct HoleRim {
 HoleRim rim_of_hole(const PlacedImage& image, double threshold) {
   HoleRim out{find_hole(image), {}};
   out.threshold = find_edges(unrolled(image, out.hole), FeatureKind::hole, threshold);
-  auto& [edges, places, rows, rims, cut_off, pitch] = out.threshold;
+  auto& [edges, places, rows, cut_off, pitch] = out.threshold;
   const auto nearest = std::ranges::min_element(
       edges, {}, [&](const ImageEdge& e) { return std::abs(e.place_nm - out.hole.radius_nm); });
   places = {places[static_cast<std::size_t>(nearest - edges.begin())]};
-  rims = {rims[static_cast<std::size_t>(nearest - edges.begin())]};
   cut_off.clear();
   edges = {*nearest};
   out.hole.radius_nm = edges.front().place_nm;
@@ -368,7 +337,9 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
   }
   for (const SightFit& fit : s.fit.sights)
     s.discrepancy_share = std::max(s.discrepancy_share, fit.discrepancy_share);
-  doubt_height(job, views, s.fit);
+  if (std::ranges::none_of(views, [](const ProfileView& v) { return v.tilt_deg > 0; }))
+    for (auto* wall : {&s.fit.left, &s.fit.right})
+      *wall = doubted_height(*wall, {job.height_nm, job.height_error_nm});
   add_surface(image, s);
   if (job.along_x && job.kind != FeatureKind::hole) turn_surface(s);
   // The wall at the left of a gap has its ground at the right.

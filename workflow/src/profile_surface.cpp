@@ -86,19 +86,18 @@ double place_error(const FittedEdge& e, std::size_t row) {
 
 /// Edges of walls that belong to no whole feature: as far from their rims as those of the others
 /// are, straight.
-std::vector<FittedEdge> cut_off_edges(const ThresholdEdges& found,
+std::vector<FittedEdge> cut_off_edges(const std::vector<WallRim>& cut_off,
                                       const std::vector<FittedEdge>& fitted, double pixel_nm) {
   constexpr double least_error_px = 0.1;
   std::vector<FittedEdge> out;
-  for (const WallRim& rim : found.cut_off) {
+  for (const WallRim& rim : cut_off) {
     const auto sign = [](bool material_right) { return material_right ? 1.0 : -1.0; };
     const bool has_like = std::ranges::any_of(
         fitted, [&](const FittedEdge& e) { return e.edge.material_right == rim.material_right; });
     double n = 0, mean = 0, squares = 0, rough = 0, error = 0;
-    for (std::size_t e = 0; e < fitted.size(); ++e) {
-      const FittedEdge& f = fitted[e];
+    for (const FittedEdge& f : fitted) {
       if (has_like && f.edge.material_right != rim.material_right) continue;
-      const double inward = sign(f.edge.material_right) * (found.rims[e].top_nm - f.place_nm.value);
+      const double inward = sign(f.edge.material_right) * (f.edge.rim_nm - f.place_nm.value);
       ++n, mean += inward, squares += inward * inward, error += f.place_nm.standard_error;
       for (const double x : f.smooth_nm)
         rough += std::pow(x - f.place_nm.value, 2) / static_cast<double>(f.smooth_nm.size());
@@ -108,7 +107,7 @@ std::vector<FittedEdge> cut_off_edges(const ThresholdEdges& found,
                  floor = least_error_px * pixel_nm;
     FittedEdge edge;
     edge.edge.material_right = rim.material_right;
-    edge.place_nm = {rim.top_nm - sign(rim.material_right) * mean,
+    edge.place_nm = {rim.place_nm - sign(rim.material_right) * mean,
                      std::sqrt(scatter + floor * floor + error * error)};
     const std::size_t rows = fitted.front().smooth_nm.size();
     edge.smooth_nm = edge.rows_nm = std::vector<double>(rows, edge.place_nm.value);
@@ -175,7 +174,8 @@ Grid<double> turned(const Grid<double>& grid) {
 void add_surface(const PlacedImage& image, ProfileSummary& s) {
   add_lines(image, s);
   std::vector<FittedEdge> edges = s.fit.edges();
-  std::ranges::move(cut_off_edges(s.threshold, edges, image.pitch_x_nm), std::back_inserter(edges));
+  std::ranges::move(cut_off_edges(s.threshold.cut_off, edges, image.pitch_x_nm),
+                    std::back_inserter(edges));
   const std::array<WallDoubt, 2> walls{WallDoubt(s.fit.left), WallDoubt(s.fit.right)};
   const int w = image.values.width(), h = image.values.height();
   s.surface = {image.placement(), Grid<double>(w, h)};

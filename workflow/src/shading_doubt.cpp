@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shading_doubt.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "surf/core/error.h"
+#include "surf/core/units.h"
+#include "surf/profile/feature_shape.h"
 
 namespace surf::workflow {
 
@@ -14,6 +19,32 @@ Measured doubted(const Measured& fitted, const NumberPrior& prior, double doubt)
   const double by_data = (fitted.value * both - prior.mean * known) / told,
                less = 1 / (1 / told + doubt * doubt);
   return {(prior.mean * known + by_data * less) / (known + less), 1 / std::sqrt(known + less)};
+}
+
+std::array<Measured, profile_numbers> doubted_height(
+    const std::array<Measured, profile_numbers>& fitted, const NumberPrior& prior) {
+  if (!(prior.deviation > 0)) return fitted;
+  auto out = fitted;
+  Measured &height = out[profile_height], &angle = out[profile_angle];
+  const Measured before = height;
+  height = doubted(before, prior, shading_doubt * prior.mean);
+  const double flank_nm = before.value / std::tan(angle.value * degrees_to_radians),
+               a = std::atan2(height.value, flank_nm),
+               more = std::sqrt(std::max(
+                   0.0, std::pow(height.standard_error, 2) - std::pow(before.standard_error, 2)));
+  if (angle.standard_error > 0)
+    angle = {a / degrees_to_radians,
+             std::hypot(angle.standard_error, std::abs(std::sin(a) * std::cos(a)) * more /
+                                                  std::abs(height.value) / degrees_to_radians)};
+  bool possible = height.value > 0;
+  try {
+    if (possible)
+      wall_profile({height.value, angle.value, out[profile_top].value, out[profile_foot].value});
+  } catch (const InvalidInput&) {  // no wall has such corners
+    possible = false;
+  }
+  if (!possible) height.value = before.value, angle.value = fitted[profile_angle].value;
+  return out;
 }
 
 }  // namespace surf::workflow

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+
 #include "surf/profile/fit_profile.h"
 
 namespace surf::workflow {
@@ -18,5 +20,11 @@ struct NumberPrior {
 /// What a number is by its prior and data, if the data are uncertain by `doubt` beside what the fit
 /// knew of that gave `fitted` from both.
 Measured doubted(const Measured& fitted, const NumberPrior& prior, double doubt);
+
+/// A wall's numbers by images from above, if what they tell of the height is uncertain by
+/// `shading_doubt`. They tell well how far the flank runs along x: another height goes with another
+/// angle. Where no wall of these corners is that high only the errors change.
+std::array<Measured, profile_numbers> doubted_height(
+    const std::array<Measured, profile_numbers>& fitted, const NumberPrior& height);
 
 }  // namespace surf::workflow

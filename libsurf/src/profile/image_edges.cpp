@@ -238,8 +238,8 @@ ThresholdEdges find_edges(const PlacedImage& image, FeatureKind kind, double thr
   const auto features = features_of(rims, kind, mean);
   if (kind == FeatureKind::line || kind == FeatureKind::trench)
     out.pitch_nm = image.pitch_x_nm * pitch_of(rims, mean, threshold);
-  const auto placed = [&](const Rim& rim) {
-    return WallRim{rim.material_right, image.x_nm(0) + top_of(rim, mean) * image.pitch_x_nm};
+  const auto rim_nm = [&](const Rim& rim) {
+    return image.x_nm(0) + top_of(rim, mean) * image.pitch_x_nm;
   };
   for (std::size_t f = 0; f < features.size(); ++f)
     for (const Rim& rim : features[f]) {
@@ -249,8 +249,7 @@ ThresholdEdges find_edges(const PlacedImage& image, FeatureKind kind, double thr
       flanks.push_back(flank);
       out.edges.push_back({static_cast<int>(f), rim.material_right,
                            image.x_nm(0) + column * image.pitch_x_nm, image.x_nm(rim.left),
-                           image.x_nm(rim.right)});
-      out.rims.push_back(placed(rim));
+                           image.x_nm(rim.right), rim_nm(rim)});
     }
   if (out.edges.empty())
     throw InvalidInput("SEM image",
@@ -263,7 +262,8 @@ ThresholdEdges find_edges(const PlacedImage& image, FeatureKind kind, double thr
                        kind == FeatureKind::hole
                            ? "Check what the image shows"
                            : "Check what the image shows; lines must run along y");
-  for (const Rim& rim : cut_off_rims(rims, features)) out.cut_off.push_back(placed(rim));
+  for (const Rim& rim : cut_off_rims(rims, features))
+    out.cut_off.push_back({rim.material_right, rim_nm(rim)});
   out.places_nm.resize(out.edges.size());
   for (int y = 0; y < image.values.height(); ++y) {
     out.rows_nm.push_back(image.y_nm(y));

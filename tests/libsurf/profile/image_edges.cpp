@@ -65,10 +65,8 @@ TEST(ImageEdges, ThePitchIsSeenWhereOneLineAloneIsWhole) {
   EXPECT_NEAR(one.pitch_nm, 170, 0.5);
   ASSERT_EQ(one.cut_off.size(), 1u);
   EXPECT_FALSE(one.cut_off[0].material_right);
-  ASSERT_EQ(one.rims.size(), 2u);
-  EXPECT_TRUE(one.rims[0].material_right);
-  EXPECT_NEAR(one.rims[1].top_nm - one.cut_off[0].top_nm, 170, 0.1);
-  EXPECT_GT(one.rims[0].top_nm, one.edges[0].place_nm);  // on the material's side
+  EXPECT_NEAR(one.edges[1].rim_nm - one.cut_off[0].place_nm, 170, 0.1);
+  EXPECT_GT(one.edges[0].rim_nm, one.edges[0].place_nm);  // on the material's side
   // From the first line's left rim to the last one's: what lies beside them is not seen.
   for (const int from : {20, 21, 22, 23}) {
     part.values = Grid<double>(152 - from, 20);

@@ -14,12 +14,13 @@ struct ImageEdge {
   bool material_right = true;     ///< the higher side is at larger x
   double place_nm = 0;            ///< x
   double from_nm = 0, to_nm = 0;  ///< the part of the image that is this edge's, along x
+  double rim_nm = 0;              ///< x of its rim's brightest place, by the mean of all rows
 };
 
-/// The bright rim of a wall in an image.
+/// The bright rim of a wall whose edge is not measured.
 struct WallRim {
   bool material_right = true;  ///< see ImageEdge
-  double top_nm = 0;           ///< x of its brightest place, by the mean of all rows
+  double place_nm = 0;         ///< x of its brightest place
 };
 
 /// Edges of an image by the threshold method: of each bright rim, where the flank on the ground's
@@ -28,7 +29,6 @@ struct ThresholdEdges {
   std::vector<ImageEdge> edges;                ///< from left to right, by the mean of all rows
   std::vector<std::vector<double>> places_nm;  ///< of each edge, by row; NaN where a row has none
   std::vector<double> rows_nm;                 ///< y of the rows
-  std::vector<WallRim> rims;                   ///< of each edge
   /// Rims of walls that belong to no whole feature, because the image cuts it off.
   std::vector<WallRim> cut_off;
   /// Distance at which walls with the ground at one side repeat, features that the image cuts off
