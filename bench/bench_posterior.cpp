@@ -50,6 +50,7 @@ using namespace surf::bench;
 using namespace surf::reconstruction;
 
 const char* const no_bias = ", no bias";
+const std::string by_walls = ", as stated";
 /// What walls may be displaced by, in pixels: deviations with other values are counted beside.
 constexpr std::array edge_doubts_px{0.0, 0.15, 0.25, 0.3};
 
@@ -125,6 +126,13 @@ void add_functions(const DrawnScene& scene, const Fitted& f, Errors& errors) {
                   should = numbers_of(parts_of(scene.true_map));
   for (std::size_t k = 0; k < affine_numbers; ++k)
     off.emplace_back(map_names[k], is[k] - should[k]);
+  if (const auto& known = f.result.map_deviation) {
+    const std::array stated{known->rotation_rad, known->scale_x,     known->scale_y,
+                            known->shear,        known->middle_x_nm, known->middle_y_nm};
+    for (std::size_t k = 0; k < affine_numbers; ++k)
+      errors.of.emplace_back(map_names[k] + by_walls,
+                             std::vector{OneError{off[k].second, stated[k]}});
+  }
   off.emplace_back("gain",
                    std::log(f.result.gains[0] / scene.sem.gains[0] / scene.true_gain_factor));
   off.emplace_back("offset", f.result.offset - scene.true_offset);
@@ -188,6 +196,7 @@ void print_tables(const std::vector<Errors>& found) {
                            "tip, radius of the apex", "gain"};
   few.insert(few.end(), scalars.begin(), scalars.end() - 1);
   for (const std::string& name : few) all.print_coverage(name);
+  for (const char* const name : map_names) all.print_coverage(name + by_walls);
   for (const std::string& name : few)
     if (!name.starts_with("tip, place")) all.print_coverage(name + no_bias);
   fmt::print(

@@ -60,8 +60,18 @@ void print_surface(const Reconstruction& r) {
                               share(1), share(2), share(3), share(0)));
 }
 
-/// What the fit was told to find besides the surface.
+/// What the fit found besides the surface.
 void print_unknowns(const Reconstruction& r, const workflow::ReconstructJob& job) {
+  if (r.map_deviation) {
+    const AffineParts map = parts_of(r.sem_to_afm);
+    const MapDeviation& d = *r.map_deviation;
+    line("map",
+         fmt::format("turned by {:.2f} ± {:.2g} deg; pixels {:.2f} ± {:.2g} and {:.2f} ± {:.2g} % "
+                     "of what was told; the middle within {:.2g} and {:.2g} nm along x and y",
+                     map.rotation_rad / degrees_to_radians, d.rotation_rad / degrees_to_radians,
+                     100 * map.scale_x, 100 * d.scale_x, 100 * map.scale_y, 100 * d.scale_y,
+                     d.middle_x_nm, d.middle_y_nm));
+  }
   if (job.options.refine_spot)
     line("spot",
          fmt::format("{} than the model's, as by a blur of {}",

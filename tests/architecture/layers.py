@@ -66,7 +66,7 @@ THIRD_PARTY = [
     ("embree*/*", ["mc_sim/src/geometry/embree_scene.cpp"]),
     ("CGAL/*", ["libsurf/src/mesh/cgal_*.cpp"]),
     ("OpenMesh/*", ["libsurf/src/mesh/openmesh_*.cpp"]),
-    ("Eigen/*", ["libsurf/src/afm/cholesky.cpp", "libsurf/src/reconstruction/descent.cpp", "libsurf/src/reconstruction/discrepancy.cpp", "libsurf/src/reconstruction/preconditioner.cpp",
+    ("Eigen/*", ["libsurf/src/afm/cholesky.cpp", "libsurf/src/reconstruction/descent.cpp", "libsurf/src/reconstruction/discrepancy.cpp", "libsurf/src/reconstruction/map_deviation.cpp", "libsurf/src/reconstruction/preconditioner.cpp",
                  "libsurf/src/reconstruction/tilt_by_sem.cpp", "libsurf/src/registration/correlation.cpp", "libsurf/src/registration/landmarks.cpp",
                  "libsurf/src/registration/uncertainty.cpp", "libsurf/src/sem/calibration/calibration.cpp",
                  "libsurf/src/sem/facet/fit_filter_bank.cpp", "libsurf/src/sem/noise/flat_samples.cpp",

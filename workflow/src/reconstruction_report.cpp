@@ -38,6 +38,14 @@ Json map_json(const Affine& m) {
           {"shift_nm", {parts.shift_x_nm, parts.shift_y_nm}}};
 }
 
+Json map_deviation_json(const MapDeviation& d) {
+  return {{"rotation_deg", number(d.rotation_rad / degrees_to_radians)},
+          {"scale_x", number(d.scale_x)},
+          {"scale_y", number(d.scale_y)},
+          {"shear", number(d.shear)},
+          {"middle_nm", {number(d.middle_x_nm), number(d.middle_y_nm)}}};
+}
+
 /// The tip's heights at 0, 1, 2 ... steps from the apex, as medians over all directions, as far as
 /// the tip has samples.
 Json profile_json(const Tip& tip) {
@@ -180,6 +188,8 @@ Json pose_json(const ReconstructJob& job, const ReconstructSummary& s) {
                                             : "landmarks"}};
   json["transform"] = map_json(pose.sem_to_afm);
   json["transform_at_the_end"] = map_json(s.result.sem_to_afm);
+  if (s.result.map_deviation)
+    json["transform_at_the_end"]["standard_error"] = map_deviation_json(*s.result.map_deviation);
   if (pose.landmarks)
     json["landmarks"] = {{"pairs", job.pose.landmarks.size()}, {"rms_nm", pose.landmarks->rms_nm}};
   if (!pose.registration) return json;

@@ -14,6 +14,7 @@
 #include "height_intervals.h"
 #include "image_guides.h"
 #include "initial_surface.h"
+#include "map_deviation.h"
 #include "posterior.h"
 #include "residual_report.h"
 #include "surf/core/error.h"
@@ -384,9 +385,11 @@ class Work {
       const Grid<double> deeper = cut(depth_doubt(objective_, at_, s, options_.threads));
       for (std::size_t i = 0; i < deeper.size(); ++i)
         linear.data()[i] = std::hypot(linear.data()[i], deeper.data()[i]);
-      HeightIntervals intervals = height_intervals(
-          common_doubts(), out.surface, cut(GaussianBasis(soft_px, options_.threads).sum(at_.z_nm)),
-          at_.surface_to_afm, linear, options_.threads);
+      const HeightField soft = cut_field(GaussianBasis(soft_px, options_.threads).sum(at_.z_nm));
+      HeightIntervals intervals = height_intervals(common_doubts(), out.surface, soft.z_nm,
+                                                   at_.surface_to_afm, linear, options_.threads);
+      if (objective_.fit_map)
+        out.map_deviation = map_deviation(soft, linear, common_doubts(), at_.surface_to_afm);
       out.deviation_nm = std::move(intervals.deviation_nm);
       out.lower_nm = std::move(intervals.lower_nm);
       out.upper_nm = std::move(intervals.upper_nm);

@@ -9,6 +9,7 @@
 #include "reconstruction/depth_doubt.h"
 #include "reconstruction/height_intervals.h"
 #include "reconstruction/initial_surface.h"
+#include "reconstruction/map_deviation.h"
 #include "small_scene.h"
 
 namespace surf {
@@ -77,6 +78,51 @@ TEST(HeightIntervals, DisplacedWallsStayBetweenGroundAndPlateau) {
   EXPECT_EQ(height_intervals(place, surface, surface.z_nm, Affine{}, Grid<double>(80, 40, 1.0), 3)
                 .upper_nm,
             i.upper_nm);
+}
+
+/// Hills 60 nm high, every 200 nm along both axes.
+HeightField hills() {
+  HeightField surface;
+  surface.pitch_x_nm = surface.pitch_y_nm = 10;
+  surface.z_nm = Grid<double>(80, 80);
+  for (int y = 0; y < 80; ++y)
+    for (int x = 0; x < 80; ++x)
+      surface.z_nm(x, y) = 30 * std::sin(M_PI * x / 10) * std::sin(M_PI * y / 10);
+  return surface;
+}
+
+TEST(MapDeviation, FollowsFromWhatWallsMayBeDisplacedBy) {
+  const HeightField surface = hills();
+  const auto known = [&](double heights_nm, const CommonDoubts& doubts) {
+    return map_deviation(surface, Grid<double>(80, 80, heights_nm), doubts, Affine{});
+  };
+  // Heights that are hardly known leave it to them: twice as far off, twice as uncertain.
+  const MapDeviation once = known(1e3, {}), twice = known(2e3, {});
+  EXPECT_NEAR(twice.middle_x_nm / once.middle_x_nm, 2, 0.01);
+  EXPECT_NEAR(twice.scale_y / once.scale_y, 2, 0.01);
+  EXPECT_NEAR(twice.rotation_rad / once.rotation_rad, 2, 0.01);
+  EXPECT_NEAR(once.middle_x_nm, once.middle_y_nm, 1e-3 * once.middle_x_nm);
+  // The mean square slope along x is a quarter of (3 pi)^2, that of differences 0.967 of it. A
+  // hundred samples count once.
+  const double slopes = 78 * 78 * 0.967 * 0.25 * std::pow(30 * M_PI / 100, 2) / 100;
+  EXPECT_NEAR(once.middle_x_nm, 1e3 / std::sqrt(slopes), 0.05 * once.middle_x_nm);
+  // Turned and shifted back to the middle: lengths of the image's size turn by what shifts.
+  EXPECT_NEAR(once.scale_x * 400 / std::sqrt(3) / once.middle_x_nm, 1, 0.1);
+  // What walls may be displaced by, and everything.
+  EXPECT_GT(known(0, {.edge_px = 0.2}).middle_x_nm, known(0, {.edge_px = 0.1}).middle_x_nm);
+  const MapDeviation moved = known(1, {.place = {16, 0, 0}}), held = known(1, {});
+  EXPECT_NEAR(moved.middle_x_nm, std::hypot(held.middle_x_nm, 40), 1e-6);
+  EXPECT_EQ(moved.middle_y_nm, held.middle_y_nm);
+  EXPECT_GT(held.middle_x_nm, 2.9);  // three tenths of a pixel
+}
+
+TEST(MapDeviation, SaysWhatNoWallHolds) {
+  const MapDeviation d = map_deviation(step(), Grid<double>(80, 40, 1.0), {}, Affine{});
+  EXPECT_TRUE(std::isinf(d.middle_y_nm));
+  EXPECT_TRUE(std::isinf(d.scale_x));  // one wall has no distance to another
+  HeightField flat = step();
+  flat.z_nm = Grid<double>(80, 40);
+  EXPECT_TRUE(std::isinf(map_deviation(flat, Grid<double>(80, 40, 1.0), {}, Affine{}).middle_x_nm));
 }
 
 TEST(HeightIntervals, HoldNinetyFivePercentOfDraws) {

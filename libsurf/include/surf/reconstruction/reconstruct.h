@@ -127,11 +127,20 @@ class ReconstructionJournal {
 /// The thickest film that is sought: what it changes is known to first order.
 constexpr double largest_film_nm = 5;
 
+/// Standard deviations of a map from SEM to AFM: of its parts (see AffineParts), and of where the
+/// image's middle lies in the scan.
+struct MapDeviation {
+  double rotation_rad = 0, scale_x = 0, scale_y = 0, shear = 0;
+  double middle_x_nm = 0, middle_y_nm = 0;
+};
+
 struct Reconstruction {
   /// In the SEM's frame and on its pixels, with the AFM's heights. With AFM data only: on the
   /// scan's samples.
   HeightField surface;
   Affine sem_to_afm;
+  /// How well the map is known; none where it is not fitted, or deviations are not wanted.
+  std::optional<MapDeviation> map_deviation;
   std::vector<double> gains;
   double offset = 0;
   /// By how much the real spot's variance along each axis exceeds the model's, in squared pixels,
