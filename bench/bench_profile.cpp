@@ -3,7 +3,9 @@
 // standard errors hold, on images whose truth is known:
 //   bench_profile [CASES [FIRST [FOLDER]]]   with a folder, results and pictures of each case go
 //                                            there
-//   bench_profile --depths [CASES [FIRST [FOLDER]]]   holes whose depth is told a fifth wrong
+//   bench_profile --depths [CASES [FIRST [FOLDER [TILT]]]]   holes whose depth is told a fifth
+//                                            wrong; with a tilt of so many degrees two further
+//                                            images, from either side
 // Cases 0 to 5 chose what the method is; the others judge it.
 // Lines, trenches and holes of drawn width, angle and corners, 100 nm high, pixels of 4 nm, 150
 // electrons per pixel; lines and trenches with rough edges. Images are made by the first tier of
@@ -114,7 +116,8 @@ mc::Physics physics_of(const Case& c) {
   return physics;
 }
 
-PlacedImage image_of(const Case& c, mc::LibrarySource& libraries) {
+PlacedImage image_of(const Case& c, mc::LibrarySource& libraries, double tilt_deg = 0,
+                     double azimuth_deg = 0) {
   const bool hole = c.shape.kind == FeatureKind::hole;
   mc::Specimen specimen;
   specimen.materials = {io::find_material("Si", "bench")};
@@ -122,6 +125,7 @@ PlacedImage image_of(const Case& c, mc::LibrarySource& libraries) {
   mc::Beam beam;
   beam.energy_ev = energy_ev;
   beam.spot_nm = spot_nm;
+  beam.tilt_deg = tilt_deg, beam.azimuth_deg = azimuth_deg;
   mc::Scan scan;
   scan.width = columns;
   scan.height = hole ? columns : rows;
@@ -130,7 +134,7 @@ PlacedImage image_of(const Case& c, mc::LibrarySource& libraries) {
   mc::SimulationOptions options;
   options.budget = mc::ElectronsPerPixel{150};
   options.method = mc::Method::replay;
-  options.seed = c.seed;
+  options.seed = c.seed + static_cast<std::uint64_t>(tilt_deg > 0 ? 7000 + azimuth_deg : 0);
   options.least_cascades = 100'000;
   const mc::SimulationResult done = mc::simulate(mc::Scene(specimen, beam, scan, physics_of(c)),
                                                  options, {.libraries = &libraries});
@@ -198,6 +202,7 @@ int main(int argc, char** argv) {
   const int cases = argc > 1 ? std::atoi(argv[1]) : depths ? 8 : 12;
   const int first = argc > 2 ? std::atoi(argv[2]) : depths ? 2 : 6;
   const std::filesystem::path folder = argc > 3 ? argv[3] : "";
+  const double tilt_deg = argc > 4 ? std::atof(argv[4]) : 0;
   double depth_squares = 0, depth_in = 0, depth_count = 0;
   workflow::CachedLibraries libraries(io::cache_folder(""));
   Pooled own, other;
@@ -218,10 +223,24 @@ int main(int argc, char** argv) {
     job.energy_ev = energy_ev;
     job.spot_nm = spot_nm;
     job.cache = io::cache_folder("");
+    if (tilt_deg > 0) {
+      for (const double azimuth_deg : {0, 180}) {
+        workflow::SemInput view;
+        view.image = image_of(c, libraries, tilt_deg, azimuth_deg);
+        job.views.push_back(std::move(view));
+        job.view_settings.tilts_deg.push_back(tilt_deg);
+        job.view_settings.azimuths_deg.push_back(azimuth_deg);
+      }
+      job.view_settings.tilt_error_deg = 0.05;
+    }
     if (!folder.empty()) {
       job.folder = folder / std::to_string(i);
       job.sem.file = folder / (std::to_string(i) + ".tif");
       bench::write_signal(job.sem.file, job.sem.image);
+      for (std::size_t k = 0; k < job.views.size(); ++k) {
+        job.views[k].file = folder / fmt::format("{}_{}.tif", i, k + 2);
+        bench::write_signal(job.views[k].file, job.views[k].image);
+      }
     }
     const auto begin = std::chrono::steady_clock::now();
     workflow::ProfileSummary s;

@@ -42,13 +42,37 @@ class ProfileJobTest : public testing::Test {
     options.budget = mc::ElectronsPerPixel{60};
     options.seed = 5;
     for (const mc::Detector& d : detectors_of(signal, "test")) options.detectors.push_back(d);
-    const mc::SimulationResult done = mc::simulate(mc::Scene(specimen, beam, scan), options, {});
+    return picture(mc::simulate(mc::Scene(specimen, beam, scan), options, {}), scan,
+                   signal == "SE" ? 0 : 2);
+  }
+
+  /// A hole 44 nm wide and 30 nm deep.
+  static PlacedImage hole(double tilt_deg = 0, double azimuth_deg = 0) {
+    const FeatureShape shape{FeatureKind::hole, 44, 0, {30, 84, 2, 2}};
+    mc::Specimen specimen;
+    specimen.materials = {io::find_material("Si", "test")};
+    specimen.bodies.push_back({"hole", feature_mesh(shape, 400), 0});
+    mc::Beam beam;
+    beam.energy_ev = energy_ev;
+    beam.tilt_deg = tilt_deg, beam.azimuth_deg = azimuth_deg;
+    mc::Scan scan;
+    scan.width = scan.height = 60;
+    scan.pixel_x_nm = scan.pixel_y_nm = pixel_nm;
+    scan.center_x_nm = 2;
+    mc::SimulationOptions options;
+    options.budget = mc::ElectronsPerPixel{150};
+    options.seed = 6;
+    return picture(mc::simulate(mc::Scene(specimen, beam, scan), options, {}), scan, 0);
+  }
+
+  static PlacedImage picture(const mc::SimulationResult& done, const mc::Scan& scan,
+                             std::size_t detector) {
     PlacedImage image;
     image.pitch_x_nm = image.pitch_y_nm = pixel_nm;
     image.values = Grid<double>(scan.width, scan.height);
     for (int y = 0; y < scan.height; ++y)
       for (int x = 0; x < scan.width; ++x)
-        image.values(x, y) = offset + gain * done.yield(signal == "SE" ? 0 : 2, x, y).mean;
+        image.values(x, y) = offset + gain * done.yield(detector, x, y).mean;
     return image;
   }
 
@@ -170,6 +194,33 @@ TEST_F(ProfileJobTest, FurtherImagesHaveTheirOwnTiltsAndSignals) {
   job_.view_settings.signals = {"SE", "side"};
   job_.along_x = true;
   refused("along_x");
+}
+
+TEST_F(ProfileJobTest, TiltedImagesTellAHolesDepth) {
+  job_.kind = FeatureKind::hole;
+  job_.sem.image = hole();
+  job_.height_nm = 24, job_.height_error_nm = 6;
+  job_.views.resize(2);
+  job_.views[0].image = hole(15, 90);
+  job_.views[1].image = hole(15, 270);
+  job_.view_settings.tilts_deg = {15, 15};
+  job_.view_settings.azimuths_deg = {90, 270};
+  job_.view_settings.tilt_error_deg = 0.1;
+  job_.rounds = 2;
+  job_.folder.clear();
+  const ProfileSummary s = run(job_);
+  EXPECT_THAT(s.reasons, testing::IsEmpty());
+  const Measured depth = s.fit.left[profile_height], width = s.fit.left[profile_width];
+  EXPECT_LT(depth.standard_error, 2.5);
+  EXPECT_NEAR(depth.value, 30, 2.5 * depth.standard_error);
+  EXPECT_NEAR(width.value, 44, 1.5);
+  // From the other side they are of no such hole.
+  std::swap(job_.views[0], job_.views[1]);
+  const ProfileSummary swapped = run(job_);
+  EXPECT_THAT(swapped.reasons, testing::Contains(HasSubstr("as from the other side")));
+  job_.view_settings.tilts_deg = {15, 0};
+  job_.view_settings.signals = {"SE", "BSE-right"};
+  EXPECT_THAT([&] { run(job_); }, ThrowsMessage<Error>(HasSubstr("all of SE or BSE")));
 }
 
 TEST_F(ProfileJobTest, LinesAlongXAreTurnedAndThreadsChangeNothing) {

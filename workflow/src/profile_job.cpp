@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "chain_steps.h"
@@ -49,13 +50,15 @@ std::vector<ProfileView> views_of(const ProfileJob& job) {
   const std::vector<std::string> signals =
       signals_of(job.view_settings, job.views.size(), job.signal);
   for (const std::string& signal : signals) detectors_of(signal, "`reconstruction.view_signal`");
-  std::vector<ProfileView> out{{job.sem.image.pitch_x_nm, 0, 0, job.energy_ev, job.signal}};
+  std::vector<ProfileView> out{{job.sem.image.pitch_x_nm, 0, 0, job.energy_ev, 0, job.signal}};
   const std::vector<ViewAngles> angles =
       angles_of(job.view_settings, job.views.size(), job.energy_ev);
   for (std::size_t k = 0; k < angles.size(); ++k)
     out.push_back({job.views[k].image.pitch_x_nm, angles[k].tilt_deg, angles[k].azimuth_deg,
-                   angles[k].energy_ev, signals[k]});
-  if (job.along_x && job.kind != FeatureKind::hole)
+                   angles[k].energy_ev, 0, signals[k]});
+  if (job.kind == FeatureKind::hole)
+    for (ProfileView& view : out) view.cut_deg = std::exchange(view.azimuth_deg, 0);
+  else if (job.along_x)
     for (ProfileView& view : out) {
       view.azimuth_deg = 90 - view.azimuth_deg;
       view.signal = transposed(view.signal);
@@ -74,9 +77,10 @@ void check(const ProfileJob& job) {
   detectors_of(job.signal, "`profile.signal`");
   const std::vector<ProfileView> views = views_of(job);
   if (!job.views.empty() && job.kind == FeatureKind::hole &&
-      std::ranges::any_of(views, &ProfileView::one_sided))
-    throw UsageError("`profile.kind`", "holes are measured from above, by all of SE or BSE",
-                     "Leave out tilts and one-sided signals");
+      std::ranges::any_of(views,
+                          [](const ProfileView& v) { return v.tilt_deg == 0 && v.one_sided(); }))
+    throw UsageError("`profile.kind`", "holes are measured by all of SE or BSE",
+                     "Leave out one-sided signals");
   check_results(job.folder, job.picture);
   for (std::size_t k = 0; k <= job.views.size(); ++k) {
     const PlacedImage& image = k == 0 ? job.sem.image : job.views[k - 1].image;
@@ -225,6 +229,24 @@ HoleRim rim_of_hole(const PlacedImage& image, double threshold) {
   return out;
 }
 
+/// What a tilted image shows of a hole: where its rim's brightest places lie tells the middle to
+/// some nanometres, because the beam sees more of the wall beyond.
+ProfileSight sight_of_cut(const ProfileJob& job, const PlacedImage& image, const ProfileView& view,
+                          double radius_nm) {
+  constexpr double middle_off_nm = 8;
+  const double tilt = view.tilt_deg * std::numbers::pi / 180;
+  Circle hole = find_hole(image);
+  const Grid<double>& v = image.values;
+  const double room = std::min({hole.x_nm - image.x_nm(0), image.x_nm(v.width() - 1) - hole.x_nm,
+                                hole.y_nm - image.y_nm(0), image.y_nm(v.height() - 1) - hole.y_nm});
+  hole.radius_nm = radius_nm;
+  ProfileSight sight{profile_data(image, HoleCut{hole, view.cut_deg, std::cos(tilt), room}),
+                     nullptr, nullptr, view.tilt_deg};
+  sight.tilt_error_deg = job.view_settings.tilt_error_deg;
+  sight.search_nm = middle_off_nm + 0.5 * (job.height_nm + job.height_error_nm) * std::sin(tilt);
+  return sight;
+}
+
 /// The height and its standard error, as told or by the scan.
 void find_height(ProfileJob& job, ProfileSummary& s, const Reporter& reporter) {
   if (job.height_nm > 0 || !job.scan) return;
@@ -262,7 +284,9 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
   }
   for (std::size_t k = 0; k < job.views.size(); ++k) {
     const PlacedImage view = along_y(job, job.views[k].image);
-    if (job.kind == FeatureKind::hole) {
+    if (job.kind == FeatureKind::hole && views[k + 1].tilt_deg > 0) {
+      sights.push_back(sight_of_cut(job, view, views[k + 1], s.hole->radius_nm));
+    } else if (job.kind == FeatureKind::hole) {
       const HoleRim rim = rim_of_hole(view, job.threshold);
       sights.push_back({profile_data(view, rim.hole, rim.threshold.edges.front().to_nm)});
     } else {
@@ -289,7 +313,7 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
   SharedLibraries libraries(kept, job.threads);
   const ProfileBox first = first_box(job, width);
   ProfileFitOptions options;
-  options.walls_alike = !job.walls_apart;
+  options.walls_alike = !job.walls_apart || job.kind == FeatureKind::hole;
   options.model_error = job.model_error;
   options.prior_mean = first.middle;
   constexpr double unknown = std::numeric_limits<double>::infinity();
@@ -301,10 +325,18 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
     begin(reporter, "simulation");
     const bool last = round + 1 >= job.rounds;
     std::vector<WallSignals> signals;
+    std::vector<std::size_t> like;  // the first image that sees walls as each does
     for (std::size_t k = 0; k < views.size(); ++k) {
       const auto part = [&](std::size_t i) {
         return static_cast<double>(i) / static_cast<double>(views.size());
       };
+      like.push_back(static_cast<std::size_t>(
+          std::ranges::find_if(views, [&](const ProfileView& v) { return v.sees_as(views[k]); }) -
+          views.begin()));
+      if (like[k] < k) {
+        signals.push_back(signals[like[k]]);
+        continue;
+      }
       signals.push_back(
           simulate_signals(job, views[k], box, s.pitch_nm, (last ? finer : 1) * job.electrons,
                            job.seed + static_cast<std::uint64_t>(round) * 1000, round == 0 && !last,
@@ -322,6 +354,10 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
     std::vector<ProfileLibrary> walls;
     walls.reserve(2 * signals.size());
     for (std::size_t k = 0; k < signals.size(); ++k) {
+      if (like[k] < k) {
+        sights[k].left = sights[like[k]].left, sights[k].right = sights[like[k]].right;
+        continue;
+      }
       walls.push_back(signals[k].left.library());
       sights[k].left = sights[k].right = &walls.back();
       if (signals[k].right.shapes.empty()) continue;

@@ -136,6 +136,11 @@ bool ProfileView::one_sided() const {
          (signal != "SE" && signal != "BSE");
 }
 
+bool ProfileView::sees_as(ProfileView other) const {
+  other.cut_deg = cut_deg;
+  return *this == other;
+}
+
 std::shared_ptr<const mc::CascadeLibrary> SharedLibraries::library(
     const mc::CascadeSettings& settings, std::size_t wanted, int, const Watch& watch) {
   const std::lock_guard lock(mutex_);

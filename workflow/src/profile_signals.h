@@ -15,10 +15,15 @@ namespace surf::workflow {
 /// How an image looks at the walls.
 struct ProfileView {
   double pixel_nm = 1, tilt_deg = 0, azimuth_deg = 0, energy_ev = 1000;
+  /// Of a cut through a hole, from x: a tilted beam leans along it, and azimuth is that against it.
+  double cut_deg = 0;
   std::string signal = "SE";
 
+  friend bool operator==(const ProfileView&, const ProfileView&) = default;
   /// Whether left and right walls give other signals.
   bool one_sided() const;
+  /// Whether walls give the same signals as in that image.
+  bool sees_as(ProfileView other) const;
 };
 
 /// One library of cascades for each energy, whoever asks.

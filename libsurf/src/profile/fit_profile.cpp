@@ -164,9 +164,19 @@ class Fit {
     const Eigen::MatrixXd by_noise =
         normal(true).matrix.ldlt().solve(Eigen::MatrixXd::Identity(all_, all_));
     Eigen::MatrixXd out = by_noise;
+    // Images that share a library share its errors.
+    std::vector<bool> added(sights_.size(), false);
     for (std::size_t k = 0; k < sights_.size(); ++k) {
-      const Eigen::MatrixXd moved =
-          by_noise * sights_[k].pull_of_library(layout_, first_[k], walls_, all_);
+      if (added[k]) continue;
+      Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(all_, 0);
+      for (std::size_t i = k; i < sights_.size(); ++i) {
+        if (!sights_[i].shares_library(sights_[k])) continue;
+        added[i] = true;
+        const Eigen::MatrixXd own = sights_[i].pull_of_library(layout_, first_[i], walls_, all_);
+        if (pull.cols() == 0) pull = own;
+        else pull += own;
+      }
+      const Eigen::MatrixXd moved = by_noise * pull;
       out += moved * moved.transpose();
     }
     return out;

@@ -47,4 +47,29 @@ ProfileData profile_data(const PlacedImage& image, const Circle& hole, double to
   return out;
 }
 
+ProfileData profile_data(const PlacedImage& image, const HoleCut& cut) {
+  constexpr double band = 0.4;  // of the radius: the rim turns by 24 degrees
+  const double a = cut.azimuth_deg * std::numbers::pi / 180, cosine = std::cos(a),
+               sine = std::sin(a), radius = cut.hole.radius_nm, pixel = image.pitch_x_nm,
+               half = band * radius;
+  ProfileData out;
+  out.rows = std::max(1, static_cast<int>(std::lround(2 * half / pixel)));
+  out.row_distance_nm = 2 * half / out.rows;
+  const double wall = cut.shortening * radius;
+  out.edges = {{0, false, -wall, -cut.to_nm, 0}, {0, true, wall, 0, cut.to_nm}};
+  for (int y = 0; y < image.values.height(); ++y)
+    for (int x = 0; x < image.values.width(); ++x) {
+      const double dx = image.x_nm(x) - cut.hole.x_nm, dy = image.y_nm(y) - cut.hole.y_nm,
+                   along = cosine * dx + sine * dy, beside = cosine * dy - sine * dx;
+      if (!(std::abs(beside) < half) || !image.is_valid(x, y)) continue;
+      const double bent = cut.shortening * (radius - std::sqrt(radius * radius - beside * beside));
+      const double at = along + (along < 0 ? -bent : bent);
+      if (std::abs(at) > cut.to_nm) continue;
+      const int row = static_cast<int>((beside + half) / out.row_distance_nm);
+      out.samples.push_back(
+          {along < 0 ? 0 : 1, std::min(row, out.rows - 1), at, image.values(x, y)});
+    }
+  return out;
+}
+
 }  // namespace surf

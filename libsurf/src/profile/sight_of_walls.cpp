@@ -115,32 +115,41 @@ double SightOfWalls::variance_of(double level) const {
   return std::max(noise_[0] + noise_[1] * level, least_variance_);
 }
 
-void SightOfWalls::move_outward(double by_nm) {
+void SightOfWalls::move_outward(double by_nm, int edge) {
   for (std::size_t e = 0; e < places_.size(); ++e) {
+    if (edge != all_edges && edge != static_cast<int>(e)) continue;
     const double by = sign_of(sight_->data.edges[e]) * by_nm;
     for (double& x : places_[e]) x -= by;
     for (double& x : raw_[e]) x -= by;
   }
 }
 
+void SightOfWalls::search(const Walls& walls, double farthest_nm, int edge) {
+  constexpr double step_nm = 0.25;
+  double best = 0, least = HUGE_VAL;
+  for (double at = -farthest_nm; at <= farthest_nm; at += step_nm) {
+    move_outward(at, edge);
+    const double left = scale(walls, edge);
+    move_outward(-at, edge);
+    if (left < least) least = left, best = at;
+  }
+  move_outward(best, edge);
+}
+
 // Where edges lie best: thresholds are off by nanometres, and chance in the library makes small
 // valleys in between, in which steps would end.
 void SightOfWalls::begin(const Walls& walls) {
-  constexpr double farthest_nm = 6, step_nm = 0.25;
-  double best = 0, least = HUGE_VAL;
-  for (double at = -farthest_nm; at <= farthest_nm; at += step_nm) {
-    move_outward(at);
-    const double left = scale(walls);
-    move_outward(-at);
-    if (left < least) least = left, best = at;
-  }
-  move_outward(best);
+  constexpr double thresholds_off_nm = 6;
+  if (sight_->search_nm > 0)
+    for (int e = 0; e < edges(); ++e) search(walls, sight_->search_nm, e);
+  else search(walls, thresholds_off_nm);
   scale(walls);
 }
 
-double SightOfWalls::scale(const Walls& walls) {
+double SightOfWalls::scale(const Walls& walls, int edge) {
   double n = 0, s = 0, y = 0, ss = 0, sy = 0, yy = 0;
   for (const ProfileSample& p : sight_->data.samples) {
+    if (edge != all_edges && edge != p.edge) continue;
     const int side = side_of(edge_of(p));
     const double v = library(side).at(u_of(p), seen(walls, side)).value;
     ++n, s += v, y += p.value, ss += v * v, sy += v * p.value, yy += p.value * p.value;

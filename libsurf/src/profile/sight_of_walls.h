@@ -49,6 +49,9 @@ class SightOfWalls {
   /// neighbouring places looks like a slope that tells where an edge is.
   Eigen::MatrixXd pull_of_library(const WallLayout& layout, int first, const Walls& walls,
                                   int all) const;
+  bool shares_library(const SightOfWalls& other) const {
+    return sight_->left == other.sight_->left && sight_->right == other.sight_->right;
+  }
   void move(const Eigen::VectorXd& step, int first);
   /// The place of each edge in each row, by its pixels alone, then as far as it stands out of the
   /// noise.
@@ -75,6 +78,8 @@ class SightOfWalls {
   SightFit result(const Walls& walls, const Eigen::MatrixXd& covariance, int first) const;
 
  private:
+  static constexpr int all_edges = -1;
+
   int bumps() const { return static_cast<int>(bumps_.size()); }
   int bump(int k) const { return edge(edges()) + k; }
   int tilt() const { return bump(bumps()); }
@@ -105,10 +110,12 @@ class SightOfWalls {
   double signal(const ProfileLibrary::Value& v) const { return v.value + 0.5 * blur2_ * v.by_u2; }
   double model(const ProfileLibrary::Value& v, double u) const;
   double variance_of(double level) const;
-  /// All edges, away from their material.
-  void move_outward(double by_nm);
-  /// Sets gain and offset, and returns the mean squared residual.
-  double scale(const Walls& walls);
+  /// All edges or one, away from their material.
+  void move_outward(double by_nm, int edge = all_edges);
+  /// Moves all edges or one to where residuals are least.
+  void search(const Walls& walls, double farthest_nm, int edge = all_edges);
+  /// Sets gain and offset by all pixels or those of an edge, and returns the mean squared residual.
+  double scale(const Walls& walls, int edge = all_edges);
   /// The signal's slope over some places: that between two alone is half chance, which would look
   /// like something that tells where the edge is.
   double slope_around(double u, int side, const ProfileNumbers& numbers) const;

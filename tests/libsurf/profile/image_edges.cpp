@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "surf/core/error.h"
@@ -148,6 +149,28 @@ TEST(ImageEdges, FindsAHolesMiddleAndRadius) {
   EXPECT_TRUE(data.closed);
   EXPECT_EQ(data.edges.size(), 1u);
   EXPECT_GT(data.samples.size(), 4000u);
+}
+
+TEST(ImageEdges, ACutThroughAHoleHasStraightWalls) {
+  const ProfileData data = profile_data(hole(), HoleCut{{115, 124, 60}, 210, 1, 90});
+  ASSERT_EQ(data.edges.size(), 2u);
+  EXPECT_FALSE(data.edges[0].material_right);
+  EXPECT_TRUE(data.edges[1].material_right);
+  EXPECT_NEAR(data.rows * data.row_distance_nm, 48, 1e-9);
+  std::array<int, 2> on_rim{};
+  for (const ProfileSample& s : data.samples) {
+    EXPECT_GE(s.row, 0);
+    EXPECT_LT(s.row, data.rows);
+    EXPECT_EQ(s.edge == 1, s.x_nm >= 0);
+    if (std::abs(std::abs(s.x_nm) - 60) > 2) continue;
+    EXPECT_NEAR(s.value, across(std::abs(s.x_nm) - 60), 0.05) << s.x_nm << " in row " << s.row;
+    ++on_rim[static_cast<std::size_t>(s.edge)];
+  }
+  EXPECT_GT(on_rim[0], 15);
+  EXPECT_GT(on_rim[1], 15);
+  // A beam that leans sees the cut shortened.
+  const ProfileData leaning = profile_data(hole(), HoleCut{{115, 124, 60}, 0, 0.9, 90});
+  EXPECT_EQ(leaning.edges[1].place_nm, 54);
 }
 
 }  // namespace

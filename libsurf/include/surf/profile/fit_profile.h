@@ -32,6 +32,10 @@ ProfileData profile_data(const PlacedImage& image, const std::vector<ImageEdge>&
 /// The pixels around a hole, up to a distance from its middle: rows are directions, x is the
 /// distance.
 ProfileData profile_data(const PlacedImage& image, const Circle& hole, double to_nm);
+/// The pixels beside a cut through a hole: rows run along the cut, x is the distance from the
+/// hole's middle, of the wall at its other side negative. Places beside the cut are moved outward
+/// as the rim bends away from it, so that both walls are straight.
+ProfileData profile_data(const PlacedImage& image, const HoleCut& cut);
 
 /// An image that is fitted, and what simulated signals of its walls are like.
 struct ProfileSight {
@@ -42,6 +46,8 @@ struct ProfileSight {
   double tilt_deg = 0;        ///< of the beam, which the libraries know
   double azimuth_deg = 0;     ///< of the beam, from x; lines run along y
   double tilt_error_deg = 0;  ///< standard error of the tilt, which is fitted; 0: it is right
+  /// Each edge is sought so far from its place by itself; 0: all together, some nanometres.
+  double search_nm = 0;
 };
 
 struct ProfileFitOptions {
