@@ -144,7 +144,7 @@ def wrong_properties_are_refused():
     refuses(simple.MeasureProfile(Input=image, **{**FEW, "Signal": "CL"}), "Signal", "CL")
     refuses(simple.MeasureProfile(Input=image, **{**FEW, "Angle": 20}), "Angle", "45")
     refuses(simple.MeasureProfile(Input=image, Tilt="3,3", **FEW), "Tilt", "2 values")
-    refuses(simple.MeasureProfile(Input=[image, image], Kind="Hole", Tilt="3", **FEW), "Kind", "from above")
+    refuses(simple.MeasureProfile(Input=[image, image], Kind="Hole", ViewSignal="SE;BSE-right", **FEW), "Kind", "all of SE or BSE")
     level = simple.SampleSurface(Shape="Mesa", FeatureHeight=0.1, Width=90, Depth=90)
     refuses(simple.MeasureProfile(Input=image, AFM=level, **{**FEW, "Height": 0}), "AFM", "levels")
     flat = simple.Calculator(Input=image, Function="1", ResultArrayName="SE")
