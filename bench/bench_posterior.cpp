@@ -50,7 +50,7 @@ using namespace surf::bench;
 using namespace surf::reconstruction;
 
 const char* const no_bias = ", no bias";
-const std::string by_walls = ", as stated";
+const char* const as_stated = ", as stated";
 /// What walls may be displaced by, in pixels: deviations with other values are counted beside.
 constexpr std::array edge_doubts_px{0.0, 0.15, 0.25, 0.3};
 
@@ -130,7 +130,7 @@ void add_functions(const DrawnScene& scene, const Fitted& f, Errors& errors) {
     const std::array stated{known->rotation_rad, known->scale_x,     known->scale_y,
                             known->shear,        known->middle_x_nm, known->middle_y_nm};
     for (std::size_t k = 0; k < affine_numbers; ++k)
-      errors.of.emplace_back(map_names[k] + by_walls,
+      errors.of.emplace_back(std::string(map_names[k]) + as_stated,
                              std::vector{OneError{off[k].second, stated[k]}});
   }
   off.emplace_back("gain",
@@ -196,7 +196,7 @@ void print_tables(const std::vector<Errors>& found) {
                            "tip, radius of the apex", "gain"};
   few.insert(few.end(), scalars.begin(), scalars.end() - 1);
   for (const std::string& name : few) all.print_coverage(name);
-  for (const char* const name : map_names) all.print_coverage(name + by_walls);
+  for (const char* const name : map_names) all.print_coverage(std::string(name) + as_stated);
   for (const std::string& name : few)
     if (!name.starts_with("tip, place")) all.print_coverage(name + no_bias);
   fmt::print(

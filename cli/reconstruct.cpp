@@ -65,12 +65,17 @@ void print_unknowns(const Reconstruction& r, const workflow::ReconstructJob& job
   if (r.map_deviation) {
     const AffineParts map = parts_of(r.sem_to_afm);
     const MapDeviation& d = *r.map_deviation;
-    line("map",
-         fmt::format("turned by {:.2f} ± {:.2g} deg; pixels {:.2f} ± {:.2g} and {:.2f} ± {:.2g} % "
-                     "of what was told; the middle within {:.2g} and {:.2g} nm along x and y",
-                     map.rotation_rad / degrees_to_radians, d.rotation_rad / degrees_to_radians,
-                     100 * map.scale_x, 100 * d.scale_x, 100 * map.scale_y, 100 * d.scale_y,
-                     d.middle_x_nm, d.middle_y_nm));
+    const auto known = [](double deviation) {
+      return std::isfinite(deviation) ? fmt::format("{:.2g}", deviation) : "(nothing holds it)";
+    };
+    line("at the end",
+         fmt::format("turned by {:.2f} ± {} deg; the SEM's pixels are {:.2f} ± {} and {:.2f} "
+                     "± {} % of what was told, by the scan",
+                     map.rotation_rad / degrees_to_radians,
+                     known(d.rotation_rad / degrees_to_radians), 100 * map.scale_x,
+                     known(100 * d.scale_x), 100 * map.scale_y, known(100 * d.scale_y)));
+    line("", fmt::format("the image's middle lies in the scan to ± {} and {} nm along x and y",
+                         known(d.middle_x_nm), known(d.middle_y_nm)));
   }
   if (job.options.refine_spot)
     line("spot",

@@ -216,6 +216,8 @@ TEST_F(ProfileJobTest, TiltedImagesTellAHolesDepth) {
   job_.view_settings.tilts_deg = {15, 0};
   job_.view_settings.signals = {"SE", "BSE-right"};
   EXPECT_THAT([&] { run(job_); }, ThrowsMessage<Error>(HasSubstr("all of SE or BSE")));
+  job_.view_settings.signals = {"BSE-right", "SE"};
+  EXPECT_THAT([&] { run(job_); }, ThrowsMessage<Error>(HasSubstr("all of SE or BSE")));
 }
 
 TEST_F(ProfileJobTest, LinesAlongXAreTurnedAndThreadsChangeNothing) {

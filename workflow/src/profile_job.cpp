@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "chain_steps.h"
@@ -50,12 +49,12 @@ std::vector<ProfileView> views_of(const ProfileJob& job) {
   const std::vector<std::string> signals =
       signals_of(job.view_settings, job.views.size(), job.signal);
   for (const std::string& signal : signals) detectors_of(signal, "`reconstruction.view_signal`");
-  std::vector<ProfileView> out{{job.sem.image.pitch_x_nm, 0, 0, job.energy_ev, 0, job.signal}};
+  std::vector<ProfileView> out{{job.sem.image.pitch_x_nm, 0, 0, job.energy_ev, job.signal}};
   const std::vector<ViewAngles> angles =
       angles_of(job.view_settings, job.views.size(), job.energy_ev);
   for (std::size_t k = 0; k < angles.size(); ++k)
     out.push_back({job.views[k].image.pitch_x_nm, angles[k].tilt_deg, angles[k].azimuth_deg,
-                   angles[k].energy_ev, 0, signals[k]});
+                   angles[k].energy_ev, signals[k]});
   if (job.kind == FeatureKind::hole)
     for (ProfileView& view : out) view.cut_deg = std::exchange(view.azimuth_deg, 0);
   else if (job.along_x)
@@ -77,8 +76,8 @@ void check(const ProfileJob& job) {
   detectors_of(job.signal, "`profile.signal`");
   const std::vector<ProfileView> views = views_of(job);
   if (!job.views.empty() && job.kind == FeatureKind::hole &&
-      std::ranges::any_of(views,
-                          [](const ProfileView& v) { return v.tilt_deg == 0 && v.one_sided(); }))
+      std::ranges::any_of(
+          views, [](const ProfileView& v) { return v.signal != "SE" && v.signal != "BSE"; }))
     throw UsageError("`profile.kind`", "holes are measured by all of SE or BSE",
                      "Leave out one-sided signals");
   check_results(job.folder, job.picture);
@@ -234,14 +233,11 @@ HoleRim rim_of_hole(const PlacedImage& image, double threshold) {
 ProfileSight sight_of_cut(const ProfileJob& job, const PlacedImage& image, const ProfileView& view,
                           double radius_nm) {
   constexpr double middle_off_nm = 8;
-  const double tilt = view.tilt_deg * std::numbers::pi / 180;
+  const double tilt = view.tilt_deg * degrees_to_radians;
   Circle hole = find_hole(image);
-  const Grid<double>& v = image.values;
-  const double room = std::min({hole.x_nm - image.x_nm(0), image.x_nm(v.width() - 1) - hole.x_nm,
-                                hole.y_nm - image.y_nm(0), image.y_nm(v.height() - 1) - hole.y_nm});
   hole.radius_nm = radius_nm;
-  ProfileSight sight{profile_data(image, HoleCut{hole, view.cut_deg, std::cos(tilt), room}),
-                     nullptr, nullptr, view.tilt_deg};
+  ProfileSight sight{profile_data(image, HoleCut{hole, view.cut_deg, std::cos(tilt)}), nullptr,
+                     nullptr, view.tilt_deg};
   sight.tilt_error_deg = job.view_settings.tilt_error_deg;
   sight.search_nm = middle_off_nm + 0.5 * (job.height_nm + job.height_error_nm) * std::sin(tilt);
   return sight;

@@ -15,9 +15,9 @@ namespace surf::workflow {
 /// How an image looks at the walls.
 struct ProfileView {
   double pixel_nm = 1, tilt_deg = 0, azimuth_deg = 0, energy_ev = 1000;
+  std::string signal = "SE";
   /// Of a cut through a hole, from x: a tilted beam leans along it, and azimuth is that against it.
   double cut_deg = 0;
-  std::string signal = "SE";
 
   friend bool operator==(const ProfileView&, const ProfileView&) = default;
   /// Whether left and right walls give other signals.

@@ -168,13 +168,11 @@ class Fit {
     std::vector<bool> added(sights_.size(), false);
     for (std::size_t k = 0; k < sights_.size(); ++k) {
       if (added[k]) continue;
-      Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(all_, 0);
-      for (std::size_t i = k; i < sights_.size(); ++i) {
+      Eigen::MatrixXd pull = sights_[k].pull_of_library(layout_, first_[k], walls_, all_);
+      for (std::size_t i = k + 1; i < sights_.size(); ++i) {
         if (!sights_[i].shares_library(sights_[k])) continue;
         added[i] = true;
-        const Eigen::MatrixXd own = sights_[i].pull_of_library(layout_, first_[i], walls_, all_);
-        if (pull.cols() == 0) pull = own;
-        else pull += own;
+        pull += sights_[i].pull_of_library(layout_, first_[i], walls_, all_);
       }
       const Eigen::MatrixXd moved = by_noise * pull;
       out += moved * moved.transpose();

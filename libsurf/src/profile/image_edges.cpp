@@ -288,6 +288,12 @@ ThresholdEdges find_edges(const PlacedImage& image, FeatureKind kind, double thr
   return out;
 }
 
+double room_about(const PlacedImage& image, const Circle& hole) {
+  const Grid<double>& v = image.values;
+  return std::min({hole.x_nm - image.x_nm(0), image.x_nm(v.width() - 1) - hole.x_nm,
+                   hole.y_nm - image.y_nm(0), image.y_nm(v.height() - 1) - hole.y_nm});
+}
+
 Circle find_hole(const PlacedImage& image) {
   const Grid<double>& v = image.values;
   const InvalidInput none(
@@ -341,19 +347,13 @@ Circle find_hole(const PlacedImage& image) {
     if (count < rays / 3.0) throw none;
     circle = {next.x_nm / count, next.y_nm / count, next.radius_nm / count};
   }
-  const double room =
-      std::min({circle.x_nm - image.x_nm(0), image.x_nm(v.width() - 1) - circle.x_nm,
-                circle.y_nm - image.y_nm(0), image.y_nm(v.height() - 1) - circle.y_nm});
-  if (!(room > circle.radius_nm + 3 * image.pitch_x_nm)) throw none;
+  if (!(room_about(image, circle) > circle.radius_nm + 3 * image.pitch_x_nm)) throw none;
   return circle;
 }
 
 PlacedImage unrolled(const PlacedImage& image, const Circle& hole) {
   const double step = image.pitch_x_nm;
-  const double room =
-      std::min({hole.x_nm - image.x_nm(0), image.x_nm(image.values.width() - 1) - hole.x_nm,
-                hole.y_nm - image.y_nm(0), image.y_nm(image.values.height() - 1) - hole.y_nm});
-  const int columns = std::max(4, static_cast<int>(std::floor(room / step)));
+  const int columns = std::max(4, static_cast<int>(std::floor(room_about(image, hole) / step)));
   const int rows =
       std::max(16, static_cast<int>(std::lround(2 * std::numbers::pi * hole.radius_nm / step)));
   PlacedImage out;

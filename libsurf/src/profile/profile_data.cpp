@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "surf/core/units.h"
 #include "surf/profile/fit_profile.h"
 
 namespace surf {
@@ -29,9 +30,7 @@ ProfileData profile_data(const PlacedImage& image, const Circle& hole, double to
   out.rows = std::max(16, static_cast<int>(std::lround(around_nm / image.pitch_x_nm)));
   out.row_distance_nm = around_nm / out.rows;
   const Grid<double>& v = image.values;
-  const double room =
-      std::min({to_nm, hole.x_nm - image.x_nm(0), image.x_nm(v.width() - 1) - hole.x_nm,
-                hole.y_nm - image.y_nm(0), image.y_nm(v.height() - 1) - hole.y_nm});
+  const double room = std::min(to_nm, room_about(image, hole));
   out.edges = {{0, true, hole.radius_nm, 0, room}};
   out.closed = true;
   for (int y = 0; y < v.height(); ++y)
@@ -49,14 +48,13 @@ ProfileData profile_data(const PlacedImage& image, const Circle& hole, double to
 
 ProfileData profile_data(const PlacedImage& image, const HoleCut& cut) {
   constexpr double band = 0.4;  // of the radius: the rim turns by 24 degrees
-  const double a = cut.azimuth_deg * std::numbers::pi / 180, cosine = std::cos(a),
-               sine = std::sin(a), radius = cut.hole.radius_nm, pixel = image.pitch_x_nm,
-               half = band * radius;
+  const double a = cut.azimuth_deg * degrees_to_radians, cosine = std::cos(a), sine = std::sin(a),
+               radius = cut.hole.radius_nm, pixel = image.pitch_x_nm, half = band * radius;
   ProfileData out;
   out.rows = std::max(1, static_cast<int>(std::lround(2 * half / pixel)));
   out.row_distance_nm = 2 * half / out.rows;
-  const double wall = cut.shortening * radius;
-  out.edges = {{0, false, -wall, -cut.to_nm, 0}, {0, true, wall, 0, cut.to_nm}};
+  const double wall = cut.shortening * radius, room = room_about(image, cut.hole);
+  out.edges = {{0, false, -wall, -room, 0}, {0, true, wall, 0, room}};
   for (int y = 0; y < image.values.height(); ++y)
     for (int x = 0; x < image.values.width(); ++x) {
       const double dx = image.x_nm(x) - cut.hole.x_nm, dy = image.y_nm(y) - cut.hole.y_nm,
@@ -64,7 +62,7 @@ ProfileData profile_data(const PlacedImage& image, const HoleCut& cut) {
       if (!(std::abs(beside) < half) || !image.is_valid(x, y)) continue;
       const double bent = cut.shortening * (radius - std::sqrt(radius * radius - beside * beside));
       const double at = along + (along < 0 ? -bent : bent);
-      if (std::abs(at) > cut.to_nm) continue;
+      if (std::abs(at) > room) continue;
       const int row = static_cast<int>((beside + half) / out.row_distance_nm);
       out.samples.push_back(
           {along < 0 ? 0 : 1, std::min(row, out.rows - 1), at, image.values(x, y)});

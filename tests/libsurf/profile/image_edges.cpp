@@ -152,7 +152,7 @@ TEST(ImageEdges, FindsAHolesMiddleAndRadius) {
 }
 
 TEST(ImageEdges, ACutThroughAHoleHasStraightWalls) {
-  const ProfileData data = profile_data(hole(), HoleCut{{115, 124, 60}, 210, 1, 90});
+  const ProfileData data = profile_data(hole(), HoleCut{{115, 124, 60}, 210, 1});
   ASSERT_EQ(data.edges.size(), 2u);
   EXPECT_FALSE(data.edges[0].material_right);
   EXPECT_TRUE(data.edges[1].material_right);
@@ -169,7 +169,7 @@ TEST(ImageEdges, ACutThroughAHoleHasStraightWalls) {
   EXPECT_GT(on_rim[0], 15);
   EXPECT_GT(on_rim[1], 15);
   // A beam that leans sees the cut shortened.
-  const ProfileData leaning = profile_data(hole(), HoleCut{{115, 124, 60}, 0, 0.9, 90});
+  const ProfileData leaning = profile_data(hole(), HoleCut{{115, 124, 60}, 0, 0.9});
   EXPECT_EQ(leaning.edges[1].place_nm, 54);
 }
 

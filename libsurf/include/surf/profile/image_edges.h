@@ -47,13 +47,14 @@ struct Circle {
 /// The hole whose bright rim surrounds the darkest part of the image. Throws InvalidInput if there
 /// is none that lies in the image with its surroundings.
 Circle find_hole(const PlacedImage& image);
+/// From the hole's middle to the nearest end of the image, nm.
+double room_about(const PlacedImage& image, const Circle& hole);
 
 /// A cut through a hole's middle in the image of a tilted beam.
 struct HoleCut {
   Circle hole;             ///< the radius is that of the specimen
   double azimuth_deg = 0;  ///< of the cut and of the beam's tilt, from x
   double shortening = 1;   ///< lengths along the cut in the image, over those of the specimen
-  double to_nm = 0;        ///< the cut ends so far from the middle
 };
 
 /// The image about a point, unrolled: columns are distances from it, rows are directions, about as
