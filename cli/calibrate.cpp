@@ -124,7 +124,7 @@ std::map<std::string, std::string> record(const CalibrateFiles& o, const Calibra
   return workflow::step_record("calibrate", workflow::records_of(o, p), inputs);
 }
 
-int work(const CalibrateOptions& options) {
+int calibrate_work(const CalibrateOptions& options) {
   CalibrateFiles o;
   CalibrateParameters parameters;
   options.bound.apply(o), options.bound.apply(parameters);
@@ -161,7 +161,7 @@ void add_calibrate(CLI::App& app, Action& action) {
   CLI::App* sub = app.add_subcommand("calibrate",
                                      "Gains and offset that turn simulated images into a real one");
   add_calibrate_options(*sub, *o);
-  sub->callback([o, &action] { action = [o] { return work(*o); }; });
+  sub->callback([o, &action] { action = [o] { return calibrate_work(*o); }; });
 }
 
 }  // namespace surf::cli

@@ -12,7 +12,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* calibrate_options_examples =
     R"(IMAGE and the simulated images show the same surface, pixel on pixel. FILE:CHANNEL names a channel of an image.
 Fits IMAGE = gain_SE * SE + gain_BSE * BSE + offset by least squares. The residual image has the channels
 calibrated (the fit), residual (IMAGE less that), valid, and gain with --range: there IMAGE and the fit are
@@ -99,7 +99,7 @@ void add_calibrate_options(CLI::App& app, CalibrateOptions& o) {
   o.bound.add<CalibrateFiles>(app, "");
   o.bound.add<workflow::CalibrateParameters>(app, "");
   add_quiet_flag(app, o.quiet)->group(output);
-  app.footer(examples);
+  app.footer(calibrate_options_examples);
 }
 
 }  // namespace surf::cli

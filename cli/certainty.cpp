@@ -19,7 +19,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* certainty_examples =
     R"(The map is 1 where the tip touched the surface and nothing else could have made the scan what it is
 there, to within the noise: there the eroded scan is the surface. 0 elsewhere: an upper bound.
 Channels: certain; radius_px, in how large a neighbourhood the contact lies (-1: uncertain); surface.
@@ -28,7 +28,7 @@ Examples:
   semsurf certainty scan.gsf --tip tip.gsf -o map.png
   semsurf certainty scan.gsf --tip tip.gsf --height-noise 0.1nm -o map.vti --eroded surface.gsf)";
 
-struct Options {
+struct CertaintyArguments {
   BoundParameters bound;
   std::string input;
   std::optional<std::string> tip, output, eroded;
@@ -51,7 +51,7 @@ Image to_image(const CertaintyMap& map) {
   return image;
 }
 
-void report(const CertaintyMap& map, const Options& o) {
+void report(const CertaintyMap& map, const CertaintyArguments& o) {
   const auto percent = [](std::size_t part, std::size_t whole) {
     return whole ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0.0;
   };
@@ -69,7 +69,7 @@ void report(const CertaintyMap& map, const Options& o) {
   if (o.eroded) print("{:<10} {}\n", "written", *o.eroded);
 }
 
-int work(const Options& o) {
+int certainty_work(const CertaintyArguments& o) {
   if (!o.output) throw UsageError("--output", "no output file is given", "Add -o map.png");
   io::check_image_target(*o.output);
   if (o.eroded) io::check_height_field_target(*o.eroded);
@@ -95,7 +95,7 @@ int work(const Options& o) {
 }  // namespace
 
 void add_certainty(CLI::App& app, Action& action) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<CertaintyArguments>();
   CLI::App* sub = app.add_subcommand("certainty", "Where an eroded scan is the surface");
   add_scan_input(*sub, o->bound, o->input);
   add_tip_input(*sub, o->tip);
@@ -111,8 +111,8 @@ void add_certainty(CLI::App& app, Action& action) {
             FileRole::written);  // its former name
   add_threads_option(*sub, o->bound, "Options");
   add_quiet_flag(*sub, o->quiet);
-  sub->footer(examples);
-  sub->callback([o, &action] { action = [o] { return work(*o); }; });
+  sub->footer(certainty_examples);
+  sub->callback([o, &action] { action = [o] { return certainty_work(*o); }; });
 }
 
 }  // namespace surf::cli

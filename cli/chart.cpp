@@ -24,7 +24,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* chart_examples =
     R"(Writes chart.svg, chart.png, chart.csv and chart.json into the folder. Stop when you like: the same
 command goes on from there. Errors are relative to each pixel of the reference (down to a tenth of
 the mean), root mean square; the reference is Monte Carlo with a third of the finest accuracy, on
@@ -44,12 +44,12 @@ Examples:
   semsurf chart cube.stl --substrate Si --tilt 40 --accuracy 2% -o cube-chart
   semsurf sample pads -o pads && semsurf chart pads --model samples/si-1keV-10nm.json -o pads-chart)";
 
-struct Options {
+struct ChartArguments {
   BoundParameters scene, bound;  // of both kinds of charts
   bool quiet = false;
 };
 
-workflow::ChartJob make_job(const Options& o, const std::string& command_line) {
+workflow::ChartJob chart_job_of(const ChartArguments& o, const std::string& command_line) {
   workflow::ChartJob job;
   o.bound.apply(job);
   if (job.folder.empty()) throw UsageError("`output`", "no folder is given", "Add `output=chart`");
@@ -66,11 +66,6 @@ std::string errors_of(const workflow::ChartPoint& p) {
   for (const workflow::ChartChannel& c : p.channels)
     text += fmt::format("  {} {:>7}", c.name, percent(c.error.rms));
   return text;
-}
-
-std::string time_text(double seconds) {
-  return seconds >= 0.995 ? fmt::format("{:.3g} s", seconds)
-                          : fmt::format("{:.3g} ms", 1e3 * seconds);
 }
 
 void print_point(const workflow::ChartPoint& p) {
@@ -91,7 +86,7 @@ void print_choices(const workflow::ChartSummary& s) {
 }
 
 /// What is of scenes says nothing of samples, and the other way round.
-void refuse_other_kind(const Options& o, bool sample) {
+void refuse_other_kind(const ChartArguments& o, bool sample) {
   std::set<std::string> own{"specimen.input"};
   const auto keep = [&](const Parameter& about, Field&) { own.insert(about.name); };
   workflow::ChartJob chart;
@@ -110,14 +105,14 @@ void refuse_other_kind(const Options& o, bool sample) {
   if (sample) refuse(o.scene.given());
 }
 
-bool is_folder(const Options& o) {
+bool is_folder(const ChartArguments& o) {
   std::error_code ignored;
   const auto inputs = o.scene.given().find("specimen.input");
   return inputs != o.scene.given().end() && inputs->second.size() == 1 &&
          std::filesystem::is_directory(inputs->second.front(), ignored);
 }
 
-int chart_folder(const Options& o, const std::string& command_line) {
+int chart_folder(const ChartArguments& o, const std::string& command_line) {
   if (leave_to_leader("chart FOLDER")) return 0;
   workflow::ChainChartJob job;
   o.bound.apply(job);
@@ -126,9 +121,9 @@ int chart_folder(const Options& o, const std::string& command_line) {
   return chart_sample(std::move(job), o.quiet);
 }
 
-int chart(const Options& o, const std::string& command_line) {
+int chart(const ChartArguments& o, const std::string& command_line) {
   workflow::ChartJob job;
-  workflow::together(team(), [&] { job = make_job(o, command_line); });
+  workflow::together(team(), [&] { job = chart_job_of(o, command_line); });
   workflow::ChartSummary s;
   {
     JobReporter reporter(o.quiet);
@@ -165,7 +160,7 @@ int chart(const Options& o, const std::string& command_line) {
   return 0;
 }
 
-void add_options(CLI::App& app, Options& o) {
+void add_options(CLI::App& app, ChartArguments& o) {
   // How much is simulated, by which method and on which mesh, is what the chart compares.
   add_request_options(app, o.scene,
                       {"beam.current", "beam.dwell", "simulation.electrons", "simulation.accuracy",
@@ -183,13 +178,13 @@ std::string footer() {
   for (const workflow::ChartFamily& f : workflow::chart_families())
     text += fmt::format("  {:<24}{}\n", f.name, f.what);
   text += "\nMethods for folders of 'semsurf sample':\n" + chart_sample_methods();
-  return text + "\n" + examples;
+  return text + "\n" + chart_examples;
 }
 
 }  // namespace
 
 void add_chart(CLI::App& app, Action& action, const std::string& command_line) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ChartArguments>();
   CLI::App* sub = app.add_subcommand(
       "chart", "Time against error of every method, on a scene or a sample of yours");
   add_options(*sub, *options);

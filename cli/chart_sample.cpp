@@ -13,11 +13,6 @@
 namespace surf::cli {
 namespace {
 
-std::string time_text(double seconds) {
-  return seconds >= 0.995 ? fmt::format("{:.3g} s", seconds)
-                          : fmt::format("{:.3g} ms", 1e3 * seconds);
-}
-
 std::string offset_text(const workflow::RegistrationPoint& p) {
   if (p.any_start) return "no start";
   return p.offset_deg > 0 ? fmt::format("{:g} degrees off", p.offset_deg)
@@ -56,6 +51,11 @@ void print_ranges(const workflow::ChainChartSummary& s) {
 }
 
 }  // namespace
+
+std::string time_text(double seconds) {
+  return seconds >= 0.995 ? fmt::format("{:.3g} s", seconds)
+                          : fmt::format("{:.3g} ms", 1e3 * seconds);
+}
 
 std::string chart_sample_methods() {
   std::string text;

@@ -7,6 +7,9 @@
 
 namespace surf::cli {
 
+/// A time as charts print it: "1.23 s", "45.6 ms".
+std::string time_text(double seconds);
+
 /// The part of the help that lists the methods for samples.
 std::string chart_sample_methods();
 

@@ -17,7 +17,7 @@ namespace {
 
 using workflow::CleanParameters;
 
-constexpr const char* examples =
+constexpr const char* clean_examples =
     R"(What is asked for happens in this order: spikes, median, closing. Widths are odd numbers of samples.
 At the border of the image and near holes the neighbourhood is what there is of it.
 
@@ -28,14 +28,14 @@ Examples:
   semsurf clean scan.gwy --median 5 --disc -o smooth.gsf
   semsurf clean scan.gsf --closing 5 --fill-holes -o filled.tif)";
 
-struct Options {
+struct CleanArguments {
   BoundParameters bound;
   std::vector<std::string> scans;
   std::optional<std::string> output;
   bool quiet = false;
 };
 
-CleanParameters parameters_of(const Options& o) {
+CleanParameters parameters_of(const CleanArguments& o) {
   if (!o.output) throw UsageError("--output", "no output file is given", "Add -o clean.gsf");
   CleanParameters p;
   o.bound.apply(p);
@@ -55,7 +55,7 @@ void print_summary(const char* what, const CleanSummary& s, const HeightField& f
         s.holes ? fmt::format(", {} holes left", s.holes) : "");
 }
 
-void clean(const Options& o, const CleanParameters& parameters,
+void clean(const CleanArguments& o, const CleanParameters& parameters,
            const io::HeightReadOptions& reading, const BatchStep& file) {
   const HeightField scan = read_scan(file.scan, reading, o.quiet).field;
   const workflow::CleanResult cleaned = workflow::clean(scan, parameters, JobReporter(o.quiet));
@@ -71,7 +71,7 @@ void clean(const Options& o, const CleanParameters& parameters,
   if (!o.quiet) print("{:<10} {}\n", "written", *file.output);
 }
 
-int work(const Options& o) {
+int clean_work(const CleanArguments& o) {
   const CleanParameters parameters = parameters_of(o);
   io::HeightReadOptions reading;
   o.bound.apply(reading);
@@ -82,7 +82,7 @@ int work(const Options& o) {
 }  // namespace
 
 void add_clean(CLI::App& app, Action& action) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<CleanArguments>();
   CLI::App* sub = app.add_subcommand("clean", "Take spikes, noise and pits out of an AFM scan");
   add_scan_inputs(*sub, o->bound, o->scans);
   o->bound.add<CleanParameters>(*sub, "Cleaning");
@@ -90,8 +90,8 @@ void add_clean(CLI::App& app, Action& action) {
   add_surface_output(*sub, o->output);
   add_threads_option(*sub, o->bound, output);
   add_quiet_flag(*sub, o->quiet)->group(output);
-  sub->footer(examples);
-  sub->callback([o, &action] { action = [o] { return work(*o); }; });
+  sub->footer(clean_examples);
+  sub->callback([o, &action] { action = [o] { return clean_work(*o); }; });
 }
 
 }  // namespace surf::cli

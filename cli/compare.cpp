@@ -24,7 +24,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* compare_examples =
     R"(Lays AFTER on BEFORE and says where they differ beyond their errors: a map of probabilities and a list of
 places, strongest first. Where nothing changed, anything at all is listed in 5 of 100 comparisons (--false-alarms).
 BEFORE and AFTER are scans, surfaces of 'semsurf reconstruct' (surface.vti brings its standard deviations), or one
@@ -39,7 +39,7 @@ Examples:
   semsurf compare part.stl scan.gwy --unit um --after-deviation 0.3nm -o change
   semsurf compare surface.vti later.tif --material Si --energy 1keV -o change)";
 
-struct Options {
+struct CompareArguments {
   BoundParameters bound;
   std::string before, after;
   bool quiet = false;
@@ -59,7 +59,8 @@ workflow::ComparedSurface read_surface(const std::string& file, io::HeightReadOp
   return surface;
 }
 
-void take_image(const Options& o, const io::MaterialChoice& material, workflow::CompareJob& job) {
+void take_image(const CompareArguments& o, const io::MaterialChoice& material,
+                workflow::CompareJob& job) {
   io::SemReadOptions reading;
   o.bound.apply(reading);
   const workflow::FileChannel name = workflow::parse_file_channel(o.after);
@@ -73,7 +74,7 @@ void take_image(const Options& o, const io::MaterialChoice& material, workflow::
   job.model.material = read_material(material, o.quiet);
 }
 
-workflow::CompareJob make_job(const Options& o) {
+workflow::CompareJob compare_job_of(const CompareArguments& o) {
   workflow::CompareJob job;
   io::MaterialChoice material;
   io::SpecimenRequest meshes;
@@ -97,10 +98,6 @@ workflow::CompareJob make_job(const Options& o) {
   workflow::ComparedSurface after = read_surface(o.after, heights, unit, o.quiet, job.after_file);
   std::visit([&](auto& surface) { job.after = std::move(surface); }, after);
   return job;
-}
-
-void print_line(const std::string& label, const std::string& text) {
-  print("{:<10} {}\n", label, text);
 }
 
 void print_places(const workflow::CompareSummary& s) {
@@ -153,8 +150,8 @@ void print_summary(const workflow::CompareJob& job, const workflow::CompareSumma
   print_written(s.written);
 }
 
-int compare(const Options& o, const std::string& command_line) {
-  workflow::CompareJob job = make_job(o);
+int compare(const CompareArguments& o, const std::string& command_line) {
+  workflow::CompareJob job = compare_job_of(o);
   job.command_line = command_line;
   workflow::CompareSummary s;
   {
@@ -168,7 +165,7 @@ int compare(const Options& o, const std::string& command_line) {
 }  // namespace
 
 void add_compare(CLI::App& app, Action& action, const std::string& command_line) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<CompareArguments>();
   CLI::App* sub =
       app.add_subcommand("compare", "Where a surface differs from another beyond their errors");
   with_role(sub->add_option("BEFORE", o->before, "A scan, a surface, or a mesh of what is expected")
@@ -196,7 +193,7 @@ void add_compare(CLI::App& app, Action& action, const std::string& command_line)
   o->bound.add<io::HeightReadOptions>(*sub, "Files");
   o->bound.add<io::SemReadOptions>(*sub, "SEM image");
   add_quiet_flag(*sub, o->quiet)->group("Output");
-  sub->footer(examples);
+  sub->footer(compare_examples);
   sub->callback([o, &action, command_line] {
     action = [o, command_line] { return compare(*o, command_line); };
   });

@@ -12,7 +12,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples = R"(Examples:
+constexpr const char* completion_examples = R"(Examples:
   source <(semsurf completion bash)                                    # in ~/.bashrc
   semsurf completion zsh > "${fpath[1]}/_semsurf"
   semsurf completion fish > ~/.config/fish/completions/semsurf.fish)";
@@ -90,7 +90,7 @@ void add_completion(CLI::App& app, Action& action) {
   const auto shell = std::make_shared<std::string>();
   CLI::App* sub = app.add_subcommand("completion", "A completion script for the shell");
   sub->add_option("SHELL", *shell, "The shell")->type_name("bash|zsh|fish");
-  sub->footer(examples);
+  sub->footer(completion_examples);
   sub->callback([shell, &action] {
     action = [shell] {
       print("{}", script_for(*shell));

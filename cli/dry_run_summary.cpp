@@ -13,10 +13,6 @@
 namespace surf::cli {
 namespace {
 
-void print_line(const std::string& label, const std::string& text) {
-  print("{:<10} {}\n", label, text);
-}
-
 void print_time(const workflow::DryRun& run) {
   const mc::Pilot& p = run.pilot;
   const std::string with = run.ranks > 1

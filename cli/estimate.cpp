@@ -16,7 +16,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* estimate_examples =
     R"(Neighbours know more: where a pixel's electrons are few, those around it tell its yield as well, as
 far as shape and a fast model say that it is alike. IMAGE has counts, as
 'semsurf simulate --channels counts,electrons,z_nm,normal,material' writes them. NAME becomes the
@@ -28,13 +28,13 @@ Examples:
   semsurf estimate few.exr -o guided.exr -o guided.png
   semsurf estimate few.exr --model samples/si-1keV-3nm.json -o guided.tif)";
 
-struct Options {
+struct EstimateArguments {
   BoundParameters bound;
   std::string image;
   bool quiet = false;
 };
 
-int estimate(const Options& o) {
+int estimate(const EstimateArguments& o) {
   workflow::EstimateJob job;
   o.bound.apply(job);
   if (o.image.empty()) throw UsageError("IMAGE", "no image is given", "Name one that has counts");
@@ -63,7 +63,7 @@ int estimate(const Options& o) {
 }  // namespace
 
 void add_estimate(CLI::App& app, Action& action) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<EstimateArguments>();
   CLI::App* sub = app.add_subcommand(
       "estimate", "A simulated image of few electrons, estimated with the help of neighbours");
   with_role(
@@ -73,7 +73,7 @@ void add_estimate(CLI::App& app, Action& action) {
   o->bound.looks["output"] = {.name = "-o,--output"};
   o->bound.add<workflow::EstimateJob>(*sub, "");
   add_quiet_flag(*sub, o->quiet)->group("Output");
-  sub->footer(examples);
+  sub->footer(estimate_examples);
   sub->callback([o, &action] { action = [o] { return estimate(*o); }; });
 }
 

@@ -26,7 +26,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples = R"(Examples:
+constexpr const char* info_examples = R"(Examples:
   semsurf info part.stl --unit um      is it closed, how large is it
   semsurf info out/cube.exr            channels, and every setting that made the image
   semsurf info scan.gwy                channels, pixels, heights and what the microscope noted
@@ -215,7 +215,7 @@ void add_info(CLI::App& app, Action& action) {
   sub->add_flag("--json", options->json,
                 "Print JSON, a list of one object per file, in place of text")
       ->group("Options");
-  sub->footer(examples);
+  sub->footer(info_examples);
   sub->callback([options, &action] {
     action = [options] {
       if (options->files.empty())

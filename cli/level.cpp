@@ -24,7 +24,7 @@ namespace {
 
 using workflow::LevelMethod, workflow::LevelParameters;
 
-constexpr const char* examples =
+constexpr const char* level_examples =
     R"(Methods:
   hough       the plane that most of the image lies on: the substrate under features
   plane       the mean plane (least squares)
@@ -39,7 +39,7 @@ Examples:
   semsurf level scan.gwy --level-method polynomial --level-degree 2 --exclude particles.png -o flat.tif
   semsurf level flat.gsf --level-method none --step 0,0,400,900 600,0,1000,900)";
 
-struct Options {
+struct LevelArguments {
   BoundParameters bound;
   std::vector<std::string> scans;
   std::optional<std::string> output, substrate_mask;
@@ -47,7 +47,7 @@ struct Options {
   bool quiet = false;
 };
 
-void refuse_contradictions(const Options& o, const LevelParameters& p) {
+void refuse_contradictions(const LevelArguments& o, const LevelParameters& p) {
   if (!o.output && o.step.empty())
     throw UsageError("--output", "no output file is given",
                      "Add -o flat.gsf, or --step to measure only");
@@ -101,7 +101,7 @@ struct Levelling {
   MaskInput masks;
 };
 
-void level(const Options& o, const Levelling& l, const BatchStep& file) {
+void level(const LevelArguments& o, const Levelling& l, const BatchStep& file) {
   const HeightField scan = read_scan(file.scan, l.reading, o.quiet).field;
   const Mask use = read_masks(l.masks, scan);
   const workflow::LevelResult levelled =
@@ -132,7 +132,7 @@ void level(const Options& o, const Levelling& l, const BatchStep& file) {
   flush();
 }
 
-int work(const Options& o) {
+int level_work(const LevelArguments& o) {
   Levelling l;
   o.bound.apply(l.parameters), o.bound.apply(l.reading), o.bound.apply(l.masks);
   refuse_contradictions(o, l.parameters);
@@ -147,7 +147,7 @@ int work(const Options& o) {
 }  // namespace
 
 void add_level(CLI::App& app, Action& action) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<LevelArguments>();
   CLI::App* sub = app.add_subcommand("level", "Level an AFM scan; roughness and step heights");
   add_scan_inputs(*sub, o->bound, o->scans);
   o->bound.looks["level.method"] = {.name = "--level-method", .former = {"--method"}};
@@ -171,8 +171,8 @@ void add_level(CLI::App& app, Action& action) {
             FileRole::written);  // its former name
   add_surface_output(*sub, o->output);
   add_quiet_flag(*sub, o->quiet)->group(output);
-  sub->footer(examples);
-  sub->callback([o, &action] { action = [o] { return work(*o); }; });
+  sub->footer(level_examples);
+  sub->callback([o, &action] { action = [o] { return level_work(*o); }; });
 }
 
 }  // namespace surf::cli

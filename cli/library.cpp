@@ -6,7 +6,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* library_examples =
     R"(A library holds cascades: primaries of one energy in one endless material, each with all its
 secondaries. Simulations replay them. What is missing they make and keep in the cache, so
 this command is needed only to do so beforehand, to look at them, or to make room.
@@ -25,7 +25,7 @@ The cache is $SEMSURF_CACHE, else $XDG_CACHE_HOME/semsurf, else ~/.cache/semsurf
 
 void add_library(CLI::App& app, Action& action) {
   CLI::App* sub = app.add_subcommand("library", "Libraries of cascades that simulations replay");
-  sub->footer(examples);
+  sub->footer(library_examples);
   add_library_list(*sub, action);
   add_library_build(*sub, action);
   add_library_plot(*sub, action);

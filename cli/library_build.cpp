@@ -15,7 +15,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* library_build_examples =
     R"(Bytes and time grow with the energy, about in proportion: silicon at 1 keV takes 13 kB for a
 cascade and some seconds for 10000. What is there already is kept and only added to; Ctrl-C
 keeps whole 2048s.
@@ -68,7 +68,7 @@ void add_library_build(CLI::App& library, Action& action) {
   CLI::App* sub = library.add_subcommand("build", "Make libraries and keep them in the cache");
   add_library_options(*sub, *options);
   sub->group("Commands");
-  sub->footer(examples);
+  sub->footer(library_build_examples);
   sub->callback([options, &action] { action = [options] { return build(*options); }; });
 }
 

@@ -14,7 +14,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* library_plot_examples =
     R"(What is missing is made, and kept in the cache. With several energies ranges and yields are
 shown against the energy, else yields against the tilt. Error bars are one standard error.
 There are 10240 cascades at least.
@@ -96,7 +96,7 @@ void add_library_plot(CLI::App& library, Action& action) {
   options->bound.add<workflow::LibraryPlotOptions>(*sub, "Options");
   options->bound.add<PlotFiles>(*sub, "Options");
   sub->group("Commands");
-  sub->footer(examples);
+  sub->footer(library_plot_examples);
   sub->callback([options, &action] { action = [options] { return plot(*options); }; });
 }
 

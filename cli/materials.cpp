@@ -22,7 +22,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples = R"(Examples:
+constexpr const char* materials_examples = R"(Examples:
   semsurf materials                                    the table
   semsurf materials Si                                 every number of silicon, with its source
   semsurf materials Si --plot si.svg                   its losses, free paths and yields, drawn
@@ -65,7 +65,7 @@ void print_table(const std::vector<mc::Material>& materials) {
   if (any) print("* estimated; 'semsurf materials NAME' says how\n");
 }
 
-void print_line(const char* label, const std::string& value, const char* unit) {
+void print_value(const char* label, const std::string& value, const char* unit) {
   print("  {:<38} {}{}{}\n", label, value, *unit ? " " : "", unit);
 }
 
@@ -73,25 +73,25 @@ void print_line(const char* label, const std::string& value, const char* unit) {
 void print_dielectric(const mc::Material& m) {
   const mc::DielectricData& data = *m.dielectric;
   const auto line = [&](const char* label, double value, const char* unit, const char* field) {
-    print_line(label, fmt::format("{:.5g}", value), unit);
+    print_value(label, fmt::format("{:.5g}", value), unit);
     for (const mc::EstimatedValue& e : data.estimates)
       if (e.field == field) print("    estimated: {}\n", e.rule);
   };
   const mc::EnergyLossFunction elf =
       data.band.gap_ev > 0 ? data.elf.above(data.band.gap_ev) : data.elf;
   print("  with inelastic=dielectric, energies from the bottom of the filled band:\n");
-  print_line("  energy-loss function",
-             fmt::format("{:g} to {:g}", elf.lowest_ev(), elf.highest_ev()), "eV");
+  print_value("  energy-loss function",
+              fmt::format("{:g} to {:g}", elf.lowest_ev(), elf.highest_ev()), "eV");
   print("    {}\n", elf.source());
   const double screening = elf.screening_sum(), complete = data.expected_screening_sum;
   double z = 0;
   for (const mc::Constituent& c : m.constituents)
     z += c.atomic_number * mc::atoms_per_formula_unit(m, c);
   const double electrons = elf.electron_sum(mc::formula_units_per_nm3(m));
-  print_line("    screening sum", fmt::format("{:.3f}, {:.3f} if complete", screening, complete),
-             "");
-  print_line("    electrons by the f-sum", fmt::format("{:.1f}, {:.4g} if complete", electrons, z),
-             "");
+  print_value("    screening sum", fmt::format("{:.3f}, {:.3f} if complete", screening, complete),
+              "");
+  print_value("    electrons by the f-sum", fmt::format("{:.1f}, {:.4g} if complete", electrons, z),
+              "");
   line("  filled band", data.band.filled_ev, "eV", "filled_band_ev");
   if (data.band.gap_ev > 0) line("  gap", data.band.gap_ev, "eV", "gap_ev");
   line("  highest filled state to vacuum", data.vacuum_ev, "eV", "vacuum_ev");
@@ -112,7 +112,7 @@ void print_dielectric(const mc::Material& m) {
   for (const mc::OpticalMode& mode : data.optical)
     line("  optical phonons", mode.energy_ev, "eV", "optical_phonons");
   if (data.trap_per_nm > 0)
-    print_line(
+    print_value(
         "  polaron traps",
         fmt::format("{:g} per nm, falling by e every {:g} eV", data.trap_per_nm, data.trap_ev), "");
   if (!data.sources.empty()) print("    {}\n", data.sources);
@@ -133,7 +133,7 @@ void print_dielectric(const mc::Material& m) {
 void print_material(const mc::Material& m) {
   const auto line = [&](const char* label, double value, const char* unit, const char* field) {
     const std::string* const rule = estimate_of(m, field);
-    print_line(label, rule ? fmt::format("{:.5g}", value) : format_exact(value), unit);
+    print_value(label, rule ? fmt::format("{:.5g}", value) : format_exact(value), unit);
     if (rule) print("    estimated: {}\n", *rule);
   };
   print("{}\n", m.name);
@@ -142,19 +142,19 @@ void print_material(const mc::Material& m) {
   line("surface barrier U0", m.barrier_ev, "eV", "barrier_ev");
   line("valence electrons per formula unit", m.valence_electrons, "", "valence_electrons");
   if (m.plasmon_ev > 0) line("plasmon energy", m.plasmon_ev, "eV", "plasmon_ev");
-  else print_line("plasmon energy", "none", "");
+  else print_value("plasmon energy", "none", "");
   line("E_b, where the low-energy loss joins", m.loss_join_ev,
        m.loss_join_fitted ? "eV (fitted to measured SE yields)" : "eV (unfitted)", "loss_join_ev");
   for (const mc::Constituent& c : m.constituents) {
     print("  {}, Z = {}, {:.4g} % of the mass, {:.4g} per formula unit\n",
           mc::element(c.atomic_number).symbol, c.atomic_number, 100 * c.weight_fraction,
           mc::atoms_per_formula_unit(m, c));
-    print_line("  atomic weight", format_exact(c.atomic_weight), "g/mol");
-    print_line("  mean ionization energy J", fmt::format("{:.5g}", c.mean_ionization_ev), "eV");
-    print_line("  atoms", fmt::format("{:.4g}", mc::number_density_per_nm3(m, c)), "per nm^3");
-    print_line("  Mott table",
-               mc::has_mott_table(c.atomic_number) ? "yes" : "no: use --physics elastic=browning",
-               "");
+    print_value("  atomic weight", format_exact(c.atomic_weight), "g/mol");
+    print_value("  mean ionization energy J", fmt::format("{:.5g}", c.mean_ionization_ev), "eV");
+    print_value("  atoms", fmt::format("{:.4g}", mc::number_density_per_nm3(m, c)), "per nm^3");
+    print_value("  Mott table",
+                mc::has_mott_table(c.atomic_number) ? "yes" : "no: use --physics elastic=browning",
+                "");
   }
   if (!m.sources.empty()) print("  sources: {}\n", m.sources);
   print_dielectric(m);
@@ -207,7 +207,7 @@ void add_materials(CLI::App& app, Action& action) {
       .name = "NAME", .help = "Material to show in full, with sources", .positional = true};
   bound->add<io::MaterialChoice>(*sub, "Options");
   bound->add<MaterialsOutput>(*sub, "Options");
-  sub->footer(examples);
+  sub->footer(materials_examples);
   sub->callback([bound, &action] {
     action = [bound] {
       io::MaterialChoice choice;

@@ -24,7 +24,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* mesh_examples =
     R"(Inputs are meshes and scans (FILE:CHANNEL chooses a channel); .glb, .gltf, .3mf, .obj, .vtp and .vtm keep
 several apart. What is asked for happens in this order: unit, scale, repair, smooth, simplify, solid. Nothing of
 it: the mesh is converted. 'semsurf info' says what is wrong with a mesh.
@@ -39,7 +39,7 @@ Examples:
   semsurf mesh broken.obj --repair --max-hole 200nm -o sound.stl
   semsurf mesh scan.ply --smooth 20 --triangles 50000 --out-unit um -o model.obj)";
 
-struct Options {
+struct MeshArguments {
   std::vector<std::string> inputs, scalars;
   std::optional<std::string> output, drape, tracks;
   BoundParameters bound;
@@ -69,7 +69,7 @@ void check_repair(const MeshParameters& p, const BoundParameters& bound) {
                        "Add --repair");
 }
 
-MeshWork make_work(const Options& o, const Plan& plan) {
+MeshWork make_work(const MeshArguments& o, const Plan& plan) {
   const MeshParameters& p = plan.parameters;
   MeshWork w;
   w.quiet = o.quiet;
@@ -91,7 +91,7 @@ MeshWork make_work(const Options& o, const Plan& plan) {
   return w;
 }
 
-void refuse_what_the_format_lacks(const Options& o, const MeshParameters& p,
+void refuse_what_the_format_lacks(const MeshArguments& o, const MeshParameters& p,
                                   const io::SurfaceFormat& format) {
   const auto refuse = [&](const char* option, const char* what, bool io::SurfaceFormat::*held) {
     std::vector<std::string_view> others;
@@ -119,7 +119,7 @@ void refuse_what_the_format_lacks(const Options& o, const MeshParameters& p,
                      "Leave one of them out");
 }
 
-Plan make_plan(const Options& o) {
+Plan make_plan(const MeshArguments& o) {
   if (o.inputs.empty()) throw UsageError("mesh", "no mesh is given", "Name a file to read");
   if (!o.output) throw UsageError("--output", "no output file is given", "Add -o mesh.ply");
   Plan p;
@@ -137,7 +137,7 @@ Plan make_plan(const Options& o) {
   return p;
 }
 
-std::map<std::string, std::string> provenance(const Options& o, const Plan& p) {
+std::map<std::string, std::string> provenance(const MeshArguments& o, const Plan& p) {
   std::vector<std::string> files;
   for (const workflow::FileChannel& f : p.inputs) files.push_back(f.file.string());
   for (const workflow::FileChannel& f : p.scalars) files.push_back(f.file.string());
@@ -150,7 +150,7 @@ std::map<std::string, std::string> provenance(const Options& o, const Plan& p) {
 /// Maps of a scan's format may lie as the scan does.
 workflow::GivenPitch picture_pitch(const Plan& p) { return p.pixel.x_nm ? p.pixel : p.work.pitch; }
 
-SurfaceScene make_scene(const Options& o, const Plan& p, Watched& watched) {
+SurfaceScene make_scene(const MeshArguments& o, const Plan& p, Watched& watched) {
   SurfaceScene scene;
   for (std::size_t i = 0; i < p.inputs.size(); ++i) {
     const auto share = static_cast<double>(p.inputs.size());
@@ -201,7 +201,7 @@ bool print_surfaces(const SurfaceScene& scene, bool quiet) {
   return sound;
 }
 
-std::vector<std::filesystem::path> write(const Options& o, const Plan& p,
+std::vector<std::filesystem::path> write(const MeshArguments& o, const Plan& p,
                                          const SurfaceScene& scene) {
   const std::optional<double>& out_unit_nm = p.parameters.out_unit_nm;
   if (!out_unit_nm) return io::write_surfaces(*o.output, scene, p.magnification);
@@ -211,7 +211,7 @@ std::vector<std::filesystem::path> write(const Options& o, const Plan& p,
   return io::write_mesh(*o.output, io::join(bodies), *out_unit_nm);
 }
 
-int work(const Options& o) {
+int mesh_work(const MeshArguments& o) {
   const Plan plan = make_plan(o);
   Watched watched(!o.quiet);
   const SurfaceScene scene = make_scene(o, plan, watched);
@@ -237,7 +237,7 @@ int work(const Options& o) {
 }  // namespace
 
 void add_mesh(CLI::App& app, Action& action) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<MeshArguments>();
   CLI::App* sub =
       app.add_subcommand("mesh", "Meshes and scans to glTF, CAD and ParaView; repair, simplify");
   with_role(sub->add_option("INPUTS", o->inputs,
@@ -284,8 +284,8 @@ void add_mesh(CLI::App& app, Action& action) {
             FileRole::written);
   add(output, {"mesh.out_unit", "mesh.magnification", "mesh.true_size", "mesh.z_exaggeration"});
   add_quiet_flag(*sub, o->quiet)->group(output);
-  sub->footer(examples);
-  sub->callback([o, &action] { action = [o] { return work(*o); }; });
+  sub->footer(mesh_examples);
+  sub->callback([o, &action] { action = [o] { return mesh_work(*o); }; });
 }
 
 }  // namespace surf::cli

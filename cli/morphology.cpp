@@ -62,7 +62,7 @@ by this tip can tell.
 Examples:
   semsurf close surface.gsf --tip tip.gsf -o closed.gsf)"};
 
-struct Options {
+struct MorphologyArguments {
   BoundParameters bound;
   std::vector<std::string> scans;
   std::optional<std::string> tip, output;
@@ -74,7 +74,7 @@ std::string relief(const HeightField& f) {
   return fmt::format("{} to {}", format_length(range.low_nm), format_length(range.high_nm));
 }
 
-void apply(const Command& command, const Options& o,
+void apply(const Command& command, const MorphologyArguments& o,
            const workflow::MorphologyParameters& parameters, const io::HeightReadOptions& reading,
            const BatchStep& file) {
   const HeightField scan = read_scan(file.scan, reading, o.quiet).field;
@@ -94,7 +94,7 @@ void apply(const Command& command, const Options& o,
   print("{:<10} {}\n", "written", *file.output);
 }
 
-int work(const Command& command, const Options& o) {
+int morphology_work(const Command& command, const MorphologyArguments& o) {
   if (!o.output) throw UsageError("--output", "no output file is given", "Add -o surface.gsf");
   workflow::MorphologyParameters parameters;
   io::HeightReadOptions reading;
@@ -107,7 +107,7 @@ int work(const Command& command, const Options& o) {
 }
 
 void add(CLI::App& app, Action& action, const Command& command) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<MorphologyArguments>();
   CLI::App* sub = app.add_subcommand(name(command.operation), command.title);
   add_scan_inputs(*sub, o->bound, o->scans);
   add_tip_input(*sub, o->tip);
@@ -118,7 +118,8 @@ void add(CLI::App& app, Action& action, const Command& command) {
   add_threads_option(*sub, o->bound, "Options");
   add_quiet_flag(*sub, o->quiet);
   sub->footer(command.examples);
-  sub->callback([o, &action, &command] { action = [o, &command] { return work(command, *o); }; });
+  sub->callback(
+      [o, &action, &command] { action = [o, &command] { return morphology_work(command, *o); }; });
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ electrons counted and tested.
 Examples:
   semsurf noise counts samples/rough.toml --at 20,-35 --electrons 1,20,100 --plot counts.svg --csv counts.csv)";
 
-struct Options {
+struct NoiseArguments {
   BoundParameters bound;
   std::string scan;
   std::optional<std::string> plot;
@@ -97,7 +97,7 @@ void print_check(const NoiseCheck& c) {
         c.skewness, c.excess_kurtosis);
 }
 
-int of_scan(const Options& o) {
+int of_scan(const NoiseArguments& o) {
   if (o.scan.empty()) throw UsageError("noise", "no scan is given", "Name a file to read");
   workflow::ScanNoiseParameters parameters;
   io::HeightReadOptions reading;
@@ -129,16 +129,18 @@ int of_scan(const Options& o) {
   return 0;
 }
 
-int of_sem_image(const Options& o) { return print_sem_noise(o.bound.given(), o.plot, o.quiet); }
-int of_scene(const Options& o) { return print_counts(o.bound, o.plot, o.quiet); }
+int of_sem_image(const NoiseArguments& o) {
+  return print_sem_noise(o.bound.given(), o.plot, o.quiet);
+}
+int of_scene(const NoiseArguments& o) { return print_counts(o.bound, o.plot, o.quiet); }
 
-void add_scan_options(CLI::App& app, Options& o, bool hidden) {
+void add_scan_options(CLI::App& app, NoiseArguments& o, bool hidden) {
   add_scan_input(app, o.bound, o.scan, hidden ? "" : "Options");
   o.bound.add<workflow::ScanNoiseParameters>(app, hidden ? "" : "Noise");
   o.bound.add<MaskInput>(app, hidden ? "" : "Samples that decide");
 }
 
-void add_outputs(CLI::App& app, Options& o, bool hidden) {
+void add_outputs(CLI::App& app, NoiseArguments& o, bool hidden) {
   const char* group = hidden ? "" : "Output";
   with_role(app.add_option("--plot", o.plot, "Chart of the results to write: .svg .png")
                 ->type_name("FILE")
@@ -156,7 +158,7 @@ std::set<std::string> names_of(Struct... of) {
 
 /// What `noise` was before it had commands of its own: `noise SCAN`, `noise --sem IMAGE`, `noise
 /// --counts SCENE`.
-int as_before(const Options& o) {
+int as_before(const NoiseArguments& o) {
   const bool sem = o.bound.is_given("noise.image"), counts = o.bound.is_given("counts.scene");
   const int uses = !o.scan.empty() + sem + counts;
   if (uses > 1)
@@ -182,11 +184,11 @@ int as_before(const Options& o) {
   return print_sem_noise(given, o.plot, o.quiet);
 }
 
-using Work = int (*)(const Options&);
+using Work = int (*)(const NoiseArguments&);
 
 CLI::App* add(CLI::App& app, const char* name, const char* title, const char* footer, Work work,
-              const std::function<void(CLI::App&, Options&)>& declare, Action& action) {
-  const auto o = std::make_shared<Options>();
+              const std::function<void(CLI::App&, NoiseArguments&)>& declare, Action& action) {
+  const auto o = std::make_shared<NoiseArguments>();
   CLI::App* sub = app.add_subcommand(name, title);
   sub->group("Commands");
   declare(*sub, *o);
@@ -204,7 +206,7 @@ void add_noise(CLI::App& app, Action& action) {
       app, "noise",
       "The noise of an AFM scan, an SEM image or simulated counts, and whether the model fits",
       of_all, as_before,
-      [](CLI::App& noise, Options& o) {
+      [](CLI::App& noise, NoiseArguments& o) {
         add_scan_options(noise, o, true);
         o.bound.looks["noise.image"] = {.name = "--sem"};
         o.bound.looks["counts.scene"] = {.name = "--counts"};
@@ -217,14 +219,14 @@ void add_noise(CLI::App& app, Action& action) {
       action);
   add(
       *sub, "scan", "The noise of an AFM scan", of_scans, of_scan,
-      [](CLI::App& scan, Options& o) {
+      [](CLI::App& scan, NoiseArguments& o) {
         add_scan_options(scan, o, false);
         add_outputs(scan, o, false);
       },
       action);
   add(
       *sub, "sem", "The noise of an SEM image", of_sem_images, of_sem_image,
-      [](CLI::App& sem, Options& o) {
+      [](CLI::App& sem, NoiseArguments& o) {
         o.bound.looks["noise.image"] = {.name = "IMAGE", .positional = true};
         o.bound.looks["scan.pixel_size"] = {
             .help = "Width and height of the pixels, as 2nm or 2nmx3nm: for regions with lengths"};
@@ -236,7 +238,7 @@ void add_noise(CLI::App& app, Action& action) {
       action);
   add(
       *sub, "counts", "The electrons from a stationary beam", of_counts, of_scene,
-      [](CLI::App& counts, Options& o) {
+      [](CLI::App& counts, NoiseArguments& o) {
         o.bound.looks["counts.scene"] = {.name = "SCENE", .positional = true};
         o.bound.add<CountsFiles>(counts, "Counts", {}, {"counts.scene"});
         add_counts_options(counts, o.bound, "Counts");

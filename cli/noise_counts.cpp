@@ -14,7 +14,7 @@
 namespace surf::cli {
 namespace {
 
-workflow::CountJob make_job(const BoundParameters& bound, const std::string& scene) {
+workflow::CountJob noise_counts_job_of(const BoundParameters& bound, const std::string& scene) {
   workflow::CountJob job;
   bound.apply(job);  // numbers are looked at before the scene is read
   job.scene = io::read_scene(scene);
@@ -65,7 +65,7 @@ int print_counts(const BoundParameters& bound, const std::optional<std::string>&
   if (files.scene.empty()) throw UsageError("noise", "no scene is given", "Name a file to read");
   if (plot) io::check_plot_target(*plot);
   if (!files.csv.empty()) io::check_writable(files.csv);
-  const workflow::CountJob job = make_job(bound, files.scene);
+  const workflow::CountJob job = noise_counts_job_of(bound, files.scene);
   workflow::CountSummary summary;
   {
     const JobReporter reporter(quiet);

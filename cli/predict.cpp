@@ -21,7 +21,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* predict_examples =
     R"(HEIGHTS are a scan, an image of heights, or a scene file whose specimen is a height field; the model
 must be of the same pixel size, and of the same material and energy where they are known. For other
 surfaces than it has learnt from the image is a guess: 'semsurf info MODEL.json' says what it knows.
@@ -32,13 +32,13 @@ Examples:
   semsurf predict fine.gsf --model si-1keV-3nm.json --resample --energy 1keV -o image.vti
   semsurf predict samples/mesa80.toml --model si-1keV-3nm.json --resample -o mesa.exr)";
 
-struct Options {
+struct PredictArguments {
   BoundParameters bound;
   std::string heights;
   bool quiet = false;
 };
 
-void take_heights(const Options& o, workflow::PredictJob& job) {
+void take_heights(const PredictArguments& o, workflow::PredictJob& job) {
   io::HeightFieldFile scan = io::read_height_field(o.heights, job.reading);
   if (!o.quiet)
     for (const std::string& note : scan.notes) print_note(fmt::format("{}: {}", o.heights, note));
@@ -52,7 +52,7 @@ void refuse_with_scene(const BoundParameters& bound) {
                        "Change the scene file");
 }
 
-workflow::PredictJob make_job(const Options& o) {
+workflow::PredictJob predict_job_of(const PredictArguments& o) {
   if (o.heights.empty())
     throw UsageError("HEIGHTS", "no surface is given", "Name a scan or an image of heights");
   workflow::PredictJob asked, job;  // numbers are looked at before files are read
@@ -82,8 +82,8 @@ std::string format_values(const Channel& channel) {
   return fmt::format("{:.4g} to {:.4g}, mean {:.4g} per primary", *low, *high, mean);
 }
 
-int predict(const Options& o) {
-  const workflow::PredictJob job = make_job(o);
+int predict(const PredictArguments& o) {
+  const workflow::PredictJob job = predict_job_of(o);
   workflow::PredictSummary s;
   {
     const JobReporter reporter(o.quiet);
@@ -106,7 +106,7 @@ int predict(const Options& o) {
 }  // namespace
 
 void add_predict(CLI::App& app, Action& action) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<PredictArguments>();
   CLI::App* sub =
       app.add_subcommand("predict", "An SEM image of heights by a model, in place of a simulation");
   with_role(
@@ -123,7 +123,7 @@ void add_predict(CLI::App& app, Action& action) {
   o->bound.looks["output.png_channel"] = {.former = {"--channel"}};
   o->bound.add<workflow::PredictJob>(*sub, "");
   add_quiet_flag(*sub, o->quiet)->group("Output");
-  sub->footer(examples);
+  sub->footer(predict_examples);
   sub->callback([o, &action] { action = [o] { return predict(*o); }; });
 }
 

@@ -20,7 +20,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* profile_examples =
     R"(How wide lines, trenches and holes are, how steep their walls, and how rough their edges, with standard
 errors: profiles of such shapes are simulated and compared with the image. The threshold method stands beside.
 Lines run along y, or along x with --along-x. How high walls are no upright view shows: say it, give a scan
@@ -53,13 +53,13 @@ void describe(ParameterVisitor& visit, ProfileFiles& files) {
                     .file = FileRole::read});
 }
 
-struct Options {
+struct ProfileArguments {
   BoundParameters bound;
   std::string image;
   bool quiet = false;
 };
 
-workflow::ProfileJob make_job(const Options& o) {
+workflow::ProfileJob profile_job_of(const ProfileArguments& o) {
   workflow::ProfileJob job;
   io::MaterialChoice material;
   ProfileFiles files;
@@ -80,10 +80,6 @@ workflow::ProfileJob make_job(const Options& o) {
     job.scan_file = files.afm;
   }
   return job;
-}
-
-void print_line(const std::string& label, const std::string& text) {
-  print("{:<10} {}\n", label, text);
 }
 
 std::string length(const Measured& m) {
@@ -141,8 +137,8 @@ void print_summary(const workflow::ProfileJob& job, const workflow::ProfileSumma
   print_written(s.written);
 }
 
-int profile(const Options& o) {
-  const workflow::ProfileJob job = make_job(o);
+int profile(const ProfileArguments& o) {
+  const workflow::ProfileJob job = profile_job_of(o);
   workflow::ProfileSummary s;
   {
     const JobReporter reporter(o.quiet);
@@ -155,7 +151,7 @@ int profile(const Options& o) {
 }  // namespace
 
 void add_profile(CLI::App& app, Action& action) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<ProfileArguments>();
   CLI::App* sub = app.add_subcommand(
       "profile", "Widths, wall angles and edge roughness of lines, trenches and holes");
   with_role(sub->add_option("IMAGE", o->image, "The SEM image")->type_name("FILE"), FileRole::read);
@@ -176,7 +172,7 @@ void add_profile(CLI::App& app, Action& action) {
   o->bound.add<ProfileFiles>(*sub, "");
   o->bound.add<workflow::ProfileJob>(*sub, "");
   add_quiet_flag(*sub, o->quiet)->group("Output");
-  sub->footer(examples);
+  sub->footer(profile_examples);
   sub->callback([o, &action] { action = [o] { return profile(*o); }; });
 }
 

@@ -163,7 +163,7 @@ void explain(const workflow::ReconstructSummary& s, const workflow::ReconstructJ
                     (job.folder / "registration.png").string()));
 }
 
-int work(const ChainOptions& o, const std::string& command_line) {
+int reconstruct_work(const ChainOptions& o, const std::string& command_line) {
   workflow::ReconstructJob job = make_reconstruct_job(o);
   job.command_line = command_line;
   workflow::ReconstructSummary s;
@@ -187,7 +187,7 @@ void add_reconstruct(CLI::App& app, Action& action, const std::string& command_l
       "reconstruct", "The surface that makes an AFM scan and an SEM image most likely");
   add_reconstruct_options(*sub, *o);
   sub->callback([o, &action, command_line] {
-    action = [o, command_line] { return work(*o, command_line); };
+    action = [o, command_line] { return reconstruct_work(*o, command_line); };
   });
 }
 

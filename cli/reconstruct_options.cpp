@@ -11,7 +11,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* reconstruct_options_examples =
     R"(Does all of it: levels the scan, finds its noise and its tip, takes the tip off, trains a fast model of SEM images
 or takes one that was kept, registers, calibrates, and finds the surface that makes both images most likely, with
 its uncertainty. Each step can be overridden; FOLDER/report.json says what was used and how to repeat it, and
@@ -110,7 +110,7 @@ void add_reconstruct_options(CLI::App& app, ChainOptions& o) {
   o.bound.add(app, "", whole_job());
   o.bound.add<ReconstructFiles>(app, "");
   add_quiet_flag(app, o.quiet)->group("Output");
-  app.footer(examples);
+  app.footer(reconstruct_options_examples);
 }
 
 }  // namespace surf::cli

@@ -21,7 +21,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* refine_examples =
     R"(START is a mesh that is about right: drawn, or a reconstruction (surface.vti). Its vertices move until
 simulated images of it agree with the SEM images, undercuts included: first the whole shape (sizes, angles of
 walls), then bumps. It is a closed body, or a sheet that goes on level beyond its rim.
@@ -44,13 +44,13 @@ void describe(ParameterVisitor& visit, RefineFiles& files) {
                        .file = FileRole::read});
 }
 
-struct Options {
+struct RefineArguments {
   BoundParameters bound;
   std::string start;
   bool quiet = false;
 };
 
-workflow::RefineJob make_job(const Options& o) {
+workflow::RefineJob refine_job_of(const RefineArguments& o) {
   workflow::RefineJob job;
   io::MaterialChoice material;
   io::SpecimenRequest meshes;
@@ -73,10 +73,6 @@ workflow::RefineJob make_job(const Options& o) {
   for (const std::string& image : files.images)
     job.images.push_back(read_sem_channel(image, reading, o.quiet));
   return job;
-}
-
-void print_line(const std::string& label, const std::string& text) {
-  print("{:<10} {}\n", label, text);
 }
 
 void print_summary(const workflow::RefineSummary& s) {
@@ -104,8 +100,8 @@ void print_summary(const workflow::RefineSummary& s) {
   print_written(s.written);
 }
 
-int refine(const Options& o) {
-  const workflow::RefineJob job = make_job(o);
+int refine(const RefineArguments& o) {
+  const workflow::RefineJob job = refine_job_of(o);
   workflow::RefineSummary s;
   {
     const JobReporter reporter(o.quiet);
@@ -118,7 +114,7 @@ int refine(const Options& o) {
 }  // namespace
 
 void add_refine(CLI::App& app, Action& action) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<RefineArguments>();
   CLI::App* sub = app.add_subcommand(
       "refine", "Let a mesh, undercuts included, agree with SEM images from several sides");
   with_role(
@@ -140,7 +136,7 @@ void add_refine(CLI::App& app, Action& action) {
   o->bound.add<RefineFiles>(*sub, "");
   o->bound.add<workflow::RefineJob>(*sub, "");
   add_quiet_flag(*sub, o->quiet)->group("Output");
-  sub->footer(examples);
+  sub->footer(refine_examples);
   sub->callback([o, &action] { action = [o] { return refine(*o); }; });
 }
 

@@ -15,7 +15,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* register_examples =
     R"(Predicts the SEM image of the scan, its tip taken off, and finds the affine map that lays the SEM image on it.
 Nothing needs to be known beforehand; landmarks help where the images are alike in several places.
 Exit code 4: the registration is not to be trusted, and the verdict says why:
@@ -28,7 +28,7 @@ Examples:
   semsurf register --afm scan.gwy --sem sem.tif --model si-1keV-10nm.json --landmarks places.csv -o transform.json
   semsurf register --afm scan.gwy --sem sem.png --pixel-size 10nm --model si.json --objective mutual-information)";
 
-int work(const ChainOptions& o) {
+int register_work(const ChainOptions& o) {
   ChainFiles files;
   workflow::RegisterJob job;
   o.bound.apply(files), o.bound.apply(job);
@@ -73,8 +73,8 @@ void add_register(CLI::App& app, Action& action) {
   o->bound.add<ChainFiles>(*sub, "");
   o->bound.add<workflow::RegisterJob>(*sub, "");
   add_quiet_flag(*sub, o->quiet)->group("Output");
-  sub->footer(examples);
-  sub->callback([o, &action] { action = [o] { return work(*o); }; });
+  sub->footer(register_examples);
+  sub->callback([o, &action] { action = [o] { return register_work(*o); }; });
 }
 
 }  // namespace surf::cli

@@ -36,7 +36,7 @@ namespace {
 using namespace surf;
 using namespace surf::cli;
 
-constexpr const char* examples = R"(Examples:
+constexpr const char* run_examples = R"(Examples:
   semsurf simulate cube.stl --material Si --substrate Si --tilt 40 -o cube.exr -o cube.png
       the secondary-electron image of a mesh (in nm) at 1 keV, as data and as a picture
   semsurf simulate samples/mesa80.toml --energy 3keV --electrons 500 -o mesa.vti
@@ -283,7 +283,7 @@ std::unique_ptr<CLI::App> make_app(Action& action, const std::string& command_li
   app->set_version_flag(
       "-V,--version", [as_json] { return *as_json ? workflow::version_json() : version_text(); },
       "Versions of semsurf and its libraries");
-  app->footer(examples);
+  app->footer(run_examples);
   app->allow_windows_style_options(false);
   add_commands(*app, action, command_line);
   return app;

@@ -19,7 +19,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* sample_examples =
     R"(A scan by a dull tip and an SEM image of a surface that is known at every place, with noise, tilt and an
 unknown map between the two: something to reconstruct, and to judge a reconstruction by. Files whose
 names have "truth" in them hold what it has to find out. The SEM image takes minutes. Stop when you like:
@@ -30,7 +30,7 @@ Examples:
   semsurf sample nist0523-thick -o thick
   semsurf sample terrain --electrons 50 --seed 2 -o noisy)";
 
-struct Options {
+struct SampleArguments {
   BoundParameters bound;
   bool list = false, quiet = false;
 };
@@ -41,7 +41,7 @@ int list_samples() {
   return 0;
 }
 
-workflow::SampleJob make_job(const Options& o) {
+workflow::SampleJob sample_job_of(const SampleArguments& o) {
   workflow::SampleJob job;
   job.cache = io::cache_folder("");
   o.bound.apply(job);
@@ -49,10 +49,6 @@ workflow::SampleJob make_job(const Options& o) {
     throw UsageError("NAME", "no sample is named", "Choose one that 'semsurf sample --list' shows");
   if (job.folder.empty()) throw UsageError("--output", "no folder is given", "Add -o FOLDER");
   return job;
-}
-
-void print_line(const std::string& label, const std::string& text) {
-  print("{:<10} {}\n", label, text);
 }
 
 /// Where there is no bar to show it: one line, as soon as the speed is known.
@@ -93,9 +89,9 @@ std::string why_stopped(const workflow::SampleJob& job, const workflow::SampleSu
   return "stopped before a part of the image was done; cascades that are made stay in the cache";
 }
 
-int sample(const Options& o) {
+int sample(const SampleArguments& o) {
   if (o.list) return list_samples();
-  const workflow::SampleJob job = make_job(o);
+  const workflow::SampleJob job = sample_job_of(o);
   workflow::SampleSummary s;
   {
     JobReporter reporter(o.quiet);
@@ -123,7 +119,7 @@ int sample(const Options& o) {
 }  // namespace
 
 void add_sample(CLI::App& app, Action& action) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<SampleArguments>();
   CLI::App* sub =
       app.add_subcommand("sample",
                          "A scan and an SEM image of a known surface, to try a reconstruction "
@@ -140,7 +136,7 @@ void add_sample(CLI::App& app, Action& action) {
        "sample.film_thickness", "sample.scan_drift", "sample.line_jitter", "sample.seed",
        "job.cache", "job.threads"});
   add_quiet_flag(*sub, o->quiet)->group(making);
-  sub->footer(examples);
+  sub->footer(sample_examples);
   sub->callback([o, &action] { action = [o] { return sample(*o); }; });
 }
 

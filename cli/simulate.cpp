@@ -50,7 +50,7 @@ int simulate(const SimulateOptions& options, const std::string& command_line) {
     summary = workflow::run(std::move(job), reporter, team());
   }
   if (!workflow::leads(team())) return 0;
-  if (!options.quiet) print_summary(threads, summary);
+  if (!options.quiet) cli::print_summary(threads, summary);
   if (!summary.result.complete) return exit_interrupted;
   return summary.statistics.missed > 0 ? exit_untrustworthy : 0;
 }

@@ -12,7 +12,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* simulate_options_examples =
     R"(Units: bare lengths are nm, bare energies eV, bare angles degrees;
 suffixes are allowed everywhere (pm A nm um mm m, eV keV MeV, deg rad mrad).
 
@@ -117,7 +117,7 @@ void add_simulate_options(CLI::App& app, SimulateOptions& o) {
                "writes nothing but libraries")
       ->group("Long jobs: the same command goes on from where it was stopped");
   add_quiet_flag(app, o.quiet)->group("Output");
-  app.footer(examples);
+  app.footer(simulate_options_examples);
 }
 
 io::SceneFile read_scene(const GivenTexts& given, bool quiet, const io::BodyReader& read) {

@@ -13,11 +13,7 @@
 namespace surf::cli {
 namespace {
 
-void print_line(const std::string& label, const std::string& text) {
-  print("{:<10} {}\n", label, text);
-}
-
-std::string percent(double part, double whole) {
+std::string whole_percent(double part, double whole) {
   const double p = whole > 0 ? 100 * part / whole : 0;
   return p > 0 && p < 1 ? "< 1 %" : fmt::format("{:.0f} %", p);
 }
@@ -46,12 +42,12 @@ void print_yields(const workflow::SimulateSummary& s) {
 
 void print_library(const workflow::SimulateSummary& s) {
   if (s.result.library_cascades == 0) return;
-  const std::string from =
-      s.pages_made == 0 ? "from the cache"
-      : s.pages_loaded == 0
-          ? "made"
-          : fmt::format("{} from the cache, the rest made",
-                        percent(double(s.pages_loaded), double(s.pages_loaded + s.pages_made)));
+  const std::string from = s.pages_made == 0 ? "from the cache"
+                           : s.pages_loaded == 0
+                               ? "made"
+                               : fmt::format("{} from the cache, the rest made",
+                                             whole_percent(double(s.pages_loaded),
+                                                           double(s.pages_loaded + s.pages_made)));
   print_line("library", fmt::format("{} cascades of each material, {} in {:.1f} s",
                                     s.result.library_cascades, from, s.result.library_seconds));
 }
@@ -70,11 +66,11 @@ void print_models(const workflow::SimulateSummary& s) {
         std::pair{mc::PixelModel::direct, "directly"}}) {
     const auto n = r.models[static_cast<std::size_t>(model)];
     if (n == 0) continue;
-    text +=
-        fmt::format("{}{} {}", text.empty() ? "" : ", ", percent(double(n), double(r.seen)), words);
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ",
+                        whole_percent(double(n), double(r.seen)), words);
     const auto electrons = r.electrons[static_cast<std::size_t>(model)];
     if (electrons > 0)
-      text += fmt::format(" ({} of the electrons)", percent(double(electrons), all));
+      text += fmt::format(" ({} of the electrons)", whole_percent(double(electrons), all));
   }
   print_line("pixels", text);
 }

@@ -17,7 +17,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* survey_examples =
     R"(Columns: file, width, height, pitch_x_nm, pitch_y_nm, tilt_deg (taken off), substrate_share (of samples on the plane),
 roughness_nm (Sq of those), relief_nm (from the 0.5th to the 99.5th percentile), noise_nm, tip_radius_nm (an
 outer bound), tip_radius_error_nm (how far noise moves it), tip_half_angle_deg, broadening_nm (what the tip
@@ -29,14 +29,14 @@ Examples:
   semsurf survey *.spm --height-channel Height --tip-size 41 -o table.csv
   semsurf survey scans/ --no-tip                 roughness and noise alone, on the screen)";
 
-struct Options {
+struct SurveyArguments {
   BoundParameters bound;
   std::vector<std::string> scans;
   std::optional<std::string> output;
   bool quiet = false;
 };
 
-int work(const Options& o) {
+int survey_work(const SurveyArguments& o) {
   if (o.scans.empty())
     throw UsageError("survey", "no scan is given", "Give scans, or folders of scans");
   if (o.output) io::check_writable(*o.output);
@@ -87,7 +87,7 @@ int work(const Options& o) {
 }  // namespace
 
 void add_survey(CLI::App& app, Action& action) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<SurveyArguments>();
   CLI::App* sub = app.add_subcommand(
       "survey", "Roughness, noise, tip and its broadening of many AFM scans, as a table");
   with_role(sub->add_option("SCAN", o->scans, "AFM scans, or folders of scans")->type_name("FILE"),
@@ -103,8 +103,8 @@ void add_survey(CLI::App& app, Action& action) {
   o->bound.looks["tip.size"] = {.name = "--tip-size"};
   o->bound.add<workflow::TipParameters>(*sub, "Tip", {}, {"tip.size", "tip.seed"});
   add_quiet_flag(*sub, o->quiet);
-  sub->footer(examples);
-  sub->callback([o, &action] { action = [o] { return work(*o); }; });
+  sub->footer(survey_examples);
+  sub->callback([o, &action] { action = [o] { return survey_work(*o); }; });
 }
 
 }  // namespace surf::cli

@@ -25,7 +25,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* sweep_examples =
     R"(What can be varied: whatever the groups Specimen, Beam, Scan, Simulation and Detectors have, files apart.
 Values are those of the options of the same name: a list with commas, or FROM:TO:STEP.
 
@@ -41,7 +41,7 @@ Examples:
   semsurf sweep samples/mesa80.toml --vary seed=1:16:1 --part 3/16 -o seeds   a job of an array
   mpirun -n 4 semsurf sweep samples/mesa80.toml --vary tilt=0deg:60deg:5deg -o tilts)";
 
-struct Options {
+struct SweepArguments {
   SimulateOptions simulate;
   BoundParameters bound;
 };
@@ -64,8 +64,8 @@ void describe(ParameterVisitor& visit, Runs& runs) {
                        .form = "exr|tif|png|vti"});
 }
 
-/// Options of `simulate` that can be varied, without dashes, and the parameters that they stand
-/// for.
+/// SweepArguments of `simulate` that can be varied, without dashes, and the parameters that they
+/// stand for.
 const std::map<std::string, std::string>& varied_parameters() {
   static const std::map<std::string, std::string> all = [] {
     std::map<std::string, std::string> known;
@@ -101,7 +101,7 @@ workflow::SweepAxis parse_axis(const std::string& text) {
   return {name, workflow::parse_sweep_values(text.substr(equals + 1), "--vary " + name)};
 }
 
-std::vector<io::FileUse> inputs_of(const Options& o) {
+std::vector<io::FileUse> inputs_of(const SweepArguments& o) {
   std::vector<io::FileUse> inputs;
   const GivenTexts& given = o.simulate.parameters.given();
   for (const auto& [option, parameter] :
@@ -112,7 +112,7 @@ std::vector<io::FileUse> inputs_of(const Options& o) {
   return inputs;
 }
 
-workflow::SweepJob make_sweep(const Options& o, const std::string& command_line) {
+workflow::SweepJob make_sweep(const SweepArguments& o, const std::string& command_line) {
   workflow::SweepJob job;
   Runs what;
   o.bound.apply(job), o.bound.apply(what);
@@ -160,7 +160,7 @@ workflow::SweepJob make_sweep(const Options& o, const std::string& command_line)
   return job;
 }
 
-int sweep(const Options& o, const std::string& command_line) {
+int sweep(const SweepArguments& o, const std::string& command_line) {
   workflow::SweepJob job;
   workflow::together(team(), [&] { job = make_sweep(o, command_line); });
   workflow::SweepSummary s;
@@ -218,7 +218,7 @@ std::vector<std::string> names_to_vary() {
 }
 
 void add_sweep(CLI::App& app, Action& action, const std::string& command_line) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SweepArguments>();
   CLI::App* sub = app.add_subcommand(
       "sweep", "Simulations over a grid of settings: energies, tilts, focus ...");
   options->bound.looks["output"] = {.name = "-o,--output"};
@@ -226,7 +226,7 @@ void add_sweep(CLI::App& app, Action& action, const std::string& command_line) {
   options->bound.add<workflow::SweepJob>(*sub, "Sweep");
   options->bound.add<Runs>(*sub, "Sweep", {}, {"sweep.format"});
   add_simulate_settings(*sub, options->simulate);
-  sub->footer(examples);
+  sub->footer(sweep_examples);
   add_join(*sub, action)->group("Commands");
   sub->callback([sub, options, &action, command_line] {
     if (!sub->get_subcommands().empty()) return;

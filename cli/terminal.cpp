@@ -32,7 +32,7 @@ std::string plain_words(std::string_view field, std::string_view value) {
 
 FieldWord field_word = plain_words;
 
-void print_line(const char* kind, const std::string& message) {
+void print_message(const char* kind, const std::string& message) {
   if (silent) return;
   fmt::print(messages(), "semsurf: {}: {}\n", kind, with_field_words(message, field_word));
 }
@@ -49,7 +49,7 @@ void on_interrupt(int) {
   token->cancel();
   static const char text[] =
       "\nsemsurf: interrupted; writing what is done (Ctrl-C again to stop at once)\n";
-  [[maybe_unused]] const auto written = write(STDERR_FILENO, text, sizeof text - 1);
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, sizeof text - 1);
 }
 
 void handle_interrupts(void (*handler)(int)) {
@@ -70,10 +70,14 @@ void speak_to(std::FILE* output, std::FILE* messages) {
   messages_to = messages;
 }
 
+void print_line(const std::string& label, const std::string& text) {
+  print("{:<10} {}\n", label, text);
+}
+
 void print_written(const std::vector<std::filesystem::path>& files) {
   const char* label = "written";
   for (const std::filesystem::path& file : files) {
-    print("{:<10} {}\n", label, file.string());
+    print_line(label, file.string());
     label = "";
   }
 }
@@ -89,9 +93,9 @@ void call_fields(FieldWord word) { field_word = word ? std::move(word) : plain_w
 
 void be_silent(bool wanted) { silent = wanted; }
 
-void print_error(const std::string& message) { print_line("error", message); }
-void print_warning(const std::string& message) { print_line("warning", message); }
-void print_note(const std::string& message) { print_line("note", message); }
+void print_error(const std::string& message) { print_message("error", message); }
+void print_warning(const std::string& message) { print_message("warning", message); }
+void print_note(const std::string& message) { print_message("note", message); }
 int print_reasons(const std::vector<std::string>& reasons) {
   for (const std::string& reason : reasons) print_warning(reason);
   return reasons.empty() ? 0 : exit_untrustworthy;

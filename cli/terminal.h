@@ -25,6 +25,8 @@ template <class... T>
 void print(fmt::format_string<T...> format, T&&... values) {
   fmt::vprint(output(), format, fmt::make_format_args(values...));
 }
+/// "LABEL      TEXT": a line of a summary.
+void print_line(const std::string& label, const std::string& text);
 /// "written" and the name of each file, one a line; the others, that belong to the first, without
 /// the word.
 void print_written(const std::vector<std::filesystem::path>& files);

@@ -24,7 +24,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* tip_examples =
     R"(Without --threshold, thresholds are swept, and the tip is chosen that leaves of the scan what its
 noise explains; the chart shows the whole curve, so that you can disagree:
   semsurf tip scan.gsf -o tip.gsf --plot tip.svg
@@ -38,7 +38,7 @@ A tip by its shape, from the scan of a known surface, or at a threshold of your 
   semsurf tip grating_scan.gsf --characterizer grating.gsf -o tip.gsf
   semsurf tip scan.gsf --threshold 0.5nm --apex-tolerance 0.5nm -o tip.gsf)";
 
-struct Options {
+struct TipArguments {
   BoundParameters bound;
   std::string scan;
   std::vector<std::string> also;
@@ -53,7 +53,7 @@ struct Options {
   }
 };
 
-std::vector<HeightField> read_scans(const Options& o) {
+std::vector<HeightField> read_scans(const TipArguments& o) {
   const auto reading = o.told<io::HeightReadOptions>();
   std::vector<HeightField> scans{read_scan(o.scan, reading, o.quiet).field};
   for (const std::string& file : o.also) scans.push_back(read_scan(file, reading, o.quiet).field);
@@ -98,14 +98,14 @@ void print_sweep(const TipSweep& sweep) {
         format_length(c.expected_nm), format_length(sweep.curve[sweep.jump].threshold_nm));
 }
 
-std::vector<std::filesystem::path> files_of(const Options& o) {
+std::vector<std::filesystem::path> files_of(const TipArguments& o) {
   std::vector<std::filesystem::path> files{*o.output};
   if (o.plot) files.emplace_back(*o.plot);
   return files;
 }
 
 /// The tip, and its chart where one is asked for; both say how they were made.
-void write_found(const Options& o, const Tip& tip, io::Plot plot,
+void write_found(const TipArguments& o, const Tip& tip, io::Plot plot,
                  const std::map<std::string, std::string>& made) {
   io::write_tip(*o.output, tip, made);
   if (!o.plot) return;
@@ -113,7 +113,7 @@ void write_found(const Options& o, const Tip& tip, io::Plot plot,
   io::write_plot(*o.plot, plot);
 }
 
-int by_shape(const Options& o) {
+int by_shape(const TipArguments& o) {
   if (!o.scan.empty()) throw UsageError("--shape", "it takes no scan", "Leave out one of the two");
   auto parameters = o.told<workflow::TipShapeParameters>();
   const auto reading = o.told<io::HeightReadOptions>();
@@ -128,7 +128,7 @@ int by_shape(const Options& o) {
   return 0;
 }
 
-int by_characterizer(const Options& o) {
+int by_characterizer(const TipArguments& o) {
   const std::vector<HeightField> scans = read_scans(o);
   if (scans.size() > 1)
     throw UsageError("--also", "a characterizer takes one scan", "Leave it out");
@@ -169,7 +169,7 @@ void print_finding(const workflow::TipResult& found) {
           format_length(*found.used.threshold_nm));
 }
 
-int from_scans(const Options& o) {
+int from_scans(const TipArguments& o) {
   auto parameters = o.told<workflow::TipParameters>();
   parameters.threads = threads_of(o.bound);
   const std::vector<HeightField> scans = read_scans(o);
@@ -188,7 +188,7 @@ int from_scans(const Options& o) {
   return found.tip.doubt.empty() ? 0 : exit_untrustworthy;
 }
 
-int work(const Options& o) {
+int tip_work(const TipArguments& o) {
   if (!o.output) throw UsageError("--output", "no output file is given", "Add -o tip.gsf");
   io::check_height_field_target(*o.output);
   if (o.plot) io::check_plot_target(*o.plot);
@@ -201,7 +201,7 @@ int work(const Options& o) {
 }  // namespace
 
 void add_tip(CLI::App& app, Action& action) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<TipArguments>();
   CLI::App* sub =
       app.add_subcommand("tip", "Find the tip that made a scan, or make one by its shape");
   add_scan_input(*sub, o->bound, o->scan);
@@ -238,8 +238,8 @@ void add_tip(CLI::App& app, Action& action) {
             FileRole::written);
   add_threads_option(*sub, o->bound, output);
   add_quiet_flag(*sub, o->quiet)->group(output);
-  sub->footer(examples);
-  sub->callback([o, &action] { action = [o] { return work(*o); }; });
+  sub->footer(tip_examples);
+  sub->callback([o, &action] { action = [o] { return tip_work(*o); }; });
 }
 
 }  // namespace surf::cli

@@ -15,10 +15,6 @@
 namespace surf::cli {
 namespace {
 
-void print_line(const std::string& label, const std::string& text) {
-  print("{:<10} {}\n", label, text);
-}
-
 void print_training(const workflow::TrainSummary& s) {
   const TrainedModel& model = s.model;
   print_line("model", format_model(model));

@@ -19,7 +19,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* train_options_examples =
     R"(Without HEIGHTS the model learns on surfaces of semsurf's own: blocks, pits, rough ones, bumps, lines,
 pyramids. Without images they are simulated, into NAME.training beside NAME.json: stop when you like,
 the same command goes on from there, and images that are there already are used again. Under mpirun each
@@ -213,7 +213,7 @@ void add_train_options(CLI::App& app, TrainOptions& o) {
   o.bound.add<TrainFiles>(app, "");
   o.bound.add<workflow::TrainJob>(app, "");
   add_quiet_flag(app, o.quiet)->group(options);
-  app.footer(kinds_in_words() + examples);
+  app.footer(kinds_in_words() + train_options_examples);
 }
 
 }  // namespace surf::cli

@@ -22,7 +22,7 @@
 namespace surf::cli {
 namespace {
 
-constexpr const char* examples =
+constexpr const char* view_examples =
     R"(One HTML file that any browser shows, from disk and without a network: surfaces in 3D, colours by height
 or any scalar, cross-sections with their profiles in nm, SEM images beside and laid on.
 Meshes, scans of every format that semsurf reads, images (EXR, TIFF, PNG, VTI); an image with a channel in nm
@@ -36,7 +36,7 @@ Examples:
 
 constexpr double heavy_page_bytes = 50e6;
 
-struct Options {
+struct ViewArguments {
   std::vector<std::string> files;
   std::optional<std::string> output, title, drape;
   std::vector<std::string> scalars;
@@ -44,10 +44,10 @@ struct Options {
   bool quiet = false;
 };
 
-const std::vector<std::string> reading_names{"specimen.unit", "specimen.override_unit",
-                                             "scan.height_unit", "scan.height_pitch"};
+const std::vector<std::string> shown_reading_names{"specimen.unit", "specimen.override_unit",
+                                                   "scan.height_unit", "scan.height_pitch"};
 
-workflow::ViewReading make_reading(const Options& o, const io::SpecimenRequest& given) {
+workflow::ViewReading make_reading(const ViewArguments& o, const io::SpecimenRequest& given) {
   workflow::ViewReading r;
   o.bound.apply(static_cast<workflow::ViewParameters&>(r));
   o.bound.apply(r.pitch);
@@ -77,7 +77,7 @@ void report(const io::WebPage& page, const io::WebPageSummary& summary, const st
         format_bytes(double(summary.bytes)), format_bytes(double(summary.viewer_bytes)));
 }
 
-int work(const Options& o) {
+int view_work(const ViewArguments& o) {
   if (o.files.empty())
     throw UsageError("view", "no file is given", "Name scans, meshes or images to show");
   if (!o.output) throw UsageError("--output", "no output file is given", "Add -o page.html");
@@ -141,7 +141,7 @@ int work(const Options& o) {
 }  // namespace
 
 void add_view(CLI::App& app, Action& action) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<ViewArguments>();
   CLI::App* sub =
       app.add_subcommand("view", "One web page that shows surfaces and images to anybody");
   with_role(
@@ -167,7 +167,7 @@ void add_view(CLI::App& app, Action& action) {
   const char* reading = "Reading";
   o->bound.looks["view.mesh_tolerance"].former = {"--tolerance"};
   o->bound.looks["view.every"].former = {"--step"};
-  o->bound.add<io::SpecimenRequest>(*sub, reading, {}, reading_names);
+  o->bound.add<io::SpecimenRequest>(*sub, reading, {}, shown_reading_names);
   o->bound.add<workflow::GivenPitch>(*sub, reading);
   o->bound.add<workflow::ViewParameters>(*sub, "Size");
   const char* output = "Output";
@@ -176,8 +176,8 @@ void add_view(CLI::App& app, Action& action) {
                 ->group(output),
             FileRole::written);
   add_quiet_flag(*sub, o->quiet)->group(output);
-  sub->footer(examples);
-  sub->callback([o, &action] { action = [o] { return work(*o); }; });
+  sub->footer(view_examples);
+  sub->callback([o, &action] { action = [o] { return view_work(*o); }; });
 }
 
 }  // namespace surf::cli

@@ -52,3 +52,12 @@ function(semsurf_precompile target)
       <memory> <optional> <span> <string> <string_view> <utility> <vector> <fmt/format.h> ${ARGN})
   endif()
 endfunction()
+
+# semsurf_unity(TARGET ALONE files...): several sources are compiled as one, so that headers are read and templates made
+# once for all of them. Names in the unnamed namespaces of ALONE are those of other sources: they are compiled apart, as are
+# sources with options of their own.
+function(semsurf_unity target)
+  cmake_parse_arguments(ARG "" "" "ALONE" ${ARGN})
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${SEMSURF_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+  set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()

@@ -58,7 +58,9 @@ TEST(SmoothModes, MoveAlikeWhatIsBesideTheirBox) {
       const Vec3& p = mesh.vertices_nm[move.vertex];
       if (p.x < 15) continue;
       const auto [at, is_new] = beyond.try_emplace({p.y, p.z}, move.by);
-      if (!is_new) EXPECT_LT(length(at->second - move.by), 1e-12);
+      if (!is_new) {
+        EXPECT_LT(length(at->second - move.by), 1e-12);
+      }
     }
   }
 }
