@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Makes Debian's packages of the build folder, has lintian read them, and tries them in a clean Debian 12.
-# Usage: packages.sh BUILD SOURCE FOLDER. Exit code 77: this machine lacks what it takes. docs/how-to/packages.md says what for.
+# Makes Debian's packages of the build folder, has lintian read them, and, asked to, tries them in a clean Debian 12.
+# Usage: packages.sh BUILD SOURCE FOLDER [clean]. Exit code 77: this machine lacks what it takes. docs/how-to/packages.md says what for.
 set -euo pipefail
-build=$1 source=$2 work=$3
+build=$1 source=$2 work=$3 clean=${4:-}
 
 skip() { printf 'skipped: %s\n' "$*"; exit 77; }
 fail() { printf 'error: %s\n' "$*" >&2; exit 1; }
-(($(id -u) == 0)) || skip "only root makes a clean system"
-for program in cpack dpkg-shlibdeps mmdebstrap lintian; do
+[[ -z $clean ]] || (($(id -u) == 0)) || skip "only root makes a clean system"
+for program in cpack dpkg-shlibdeps lintian ${clean:+mmdebstrap}; do
   command -v "$program" >/dev/null || skip "there is no $program: apt-get install dpkg-dev mmdebstrap lintian"
 done
 began=$SECONDS
@@ -36,6 +36,7 @@ for package in "${expected[@]}"; do
 done
 lintian --fail-on error --allow-root --tag-display-limit 0 "$work"/debs/*.deb || fail "lintian found errors"
 step "read by lintian"
+[[ -n $clean ]] || exit 0
 
 # Only what the program alone needs: images come with their package.
 cat >"$work/program.sh" <<'IN'
