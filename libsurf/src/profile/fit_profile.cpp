@@ -4,7 +4,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "follow_rows.h"
 #include "sight_of_walls.h"
@@ -40,7 +39,6 @@ class Fit {
     }
     for (int& first : first_) first += layout_.all();
     all_ += layout_.all();
-    number_bumps();
     width_now();
     for (SightOfWalls& sight : sights_) sight.begin(walls_);
     width_now();
@@ -80,19 +78,6 @@ class Fit {
   }
 
  private:
-  /// What the simulation is off by is the same in all images that share libraries.
-  void number_bumps() {
-    std::vector<int> first(sights_.size());
-    for (std::size_t k = 0; k < sights_.size(); ++k) {
-      const auto same = std::ranges::find_if(
-          sights_, [&](const SightOfWalls& s) { return s.shares_library(sights_[k]); });
-      const auto i = static_cast<std::size_t>(same - sights_.begin());
-      if (i == k) first[k] = std::exchange(all_, all_ + sights_[k].bumps());
-      else first[k] = first[i];
-      sights_[k].number_bumps(first[k], i == k);
-    }
-  }
-
   static bool one_side_only(const std::vector<ProfileSight>& sights) {
     const auto right = [](const ImageEdge& e) { return e.material_right; };
     const auto all = [&](auto holds) {

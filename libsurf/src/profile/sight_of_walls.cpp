@@ -35,9 +35,10 @@ SightOfWalls::SightOfWalls(const ProfileSight& sight, const ProfileFitOptions& o
   const ProfileLibrary& l = *sight.left;
   const double range_nm = l.last_u_nm() - l.first_u_nm();
   near_bumps_ = 1 + static_cast<int>(std::ceil(range_nm / options.model_error_nm));
-  bumps_of_wall_ =
-      near_bumps_ + 1 + static_cast<int>(std::ceil(range_nm / (farther * options.model_error_nm)));
-  bumps_.assign(static_cast<std::size_t>(bumps_of_wall_ * (sight.left == sight.right ? 1 : 2)), 0);
+  bumps_.assign(
+      static_cast<std::size_t>(near_bumps_ + 1) +
+          static_cast<std::size_t>(std::ceil(range_nm / (farther * options.model_error_nm))),
+      0);
   const auto rows = static_cast<std::size_t>(sight.data.rows);
   for (const ImageEdge& e : sight.data.edges) {
     places_.emplace_back(rows, e.place_nm);
@@ -79,7 +80,7 @@ ProfileNumbers SightOfWalls::seen(const Walls& walls, int side) const {
   return numbers;
 }
 
-SightOfWalls::Bump SightOfWalls::bump_at(double u, int side) const {
+SightOfWalls::Bump SightOfWalls::bump_at(double u) const {
   const auto among = [&](double distance_nm, int count) {
     const double at = std::clamp((u - sight_->left->first_u_nm()) / distance_nm, 0.0,
                                  static_cast<double>(count - 1) - 1e-9);
@@ -87,16 +88,13 @@ SightOfWalls::Bump SightOfWalls::bump_at(double u, int side) const {
     return std::pair(first, at - first);
   };
   const auto [near, near_share] = among(options_->model_error_nm, near_bumps_);
-  const auto [far, far_share] =
-      among(farther * options_->model_error_nm, bumps_of_wall_ - near_bumps_);
-  const int first = sight_->left == sight_->right ? 0 : side * bumps_of_wall_,
-            first_far = first + near_bumps_;
-  return {{first + near, first + near + 1, first_far + far, first_far + far + 1},
+  const auto [far, far_share] = among(farther * options_->model_error_nm, bumps() - near_bumps_);
+  return {{near, near + 1, near_bumps_ + far, near_bumps_ + far + 1},
           {1 - near_share, near_share, 1 - far_share, far_share}};
 }
 
-double SightOfWalls::bumps_at(double u, int side) const {
-  const Bump b = bump_at(u, side);
+double SightOfWalls::bumps_at(double u) const {
+  const Bump b = bump_at(u);
   double sum = 0;
   for (std::size_t i = 0; i < b.numbers.size(); ++i)
     sum += b.weights[i] * bumps_[static_cast<std::size_t>(b.numbers[i])];
@@ -105,12 +103,12 @@ double SightOfWalls::bumps_at(double u, int side) const {
 
 double SightOfWalls::bump_deviation(int number) const {
   constexpr double least = 1e-6;  // a prior of no width has no inverse
-  const double share = number % bumps_of_wall_ < near_bumps_ ? 1 : far_share;
-  return std::max(options_->model_error * share, least) * contrast_;
+  const double share = number < near_bumps_ ? 1 : far_share;
+  return gain_ * std::max(options_->model_error * share, least) * contrast_;
 }
 
-double SightOfWalls::model(const ProfileLibrary::Value& v, double u, int side) const {
-  return gain_ * (signal(v) + bumps_at(u, side)) + offset_;
+double SightOfWalls::model(const ProfileLibrary::Value& v, double u) const {
+  return gain_ * signal(v) + offset_ + bumps_at(u);
 }
 
 double SightOfWalls::variance_of(double level) const {
@@ -182,14 +180,14 @@ void SightOfWalls::derivatives(const WallLayout& layout, int first, const Profil
                                Derivatives& d) const {
   const int side = side_of(edge_of(s));
   d.clear();
-  d.emplace_back(first, (signal(v) + bumps_at(u, side)) * gain_);  // of the gain's logarithm
+  d.emplace_back(first, signal(v) * gain_);  // of the gain's logarithm
   d.emplace_back(first + 1, 1);
   for (std::size_t k = 0; k < layout.free.size(); ++k)
     d.emplace_back(layout.wall(side) + static_cast<int>(k), gain_ * v.by_number[layout.free[k]]);
   d.emplace_back(first + edge(s.edge), -sign_of(edge_of(s)) * gain_ * slope);
-  const Bump b = bump_at(u, side);
+  const Bump b = bump_at(u);
   for (std::size_t i = 0; i < b.numbers.size(); ++i)
-    d.emplace_back(first_bump_ + b.numbers[i], gain_ * b.weights[i]);
+    d.emplace_back(first + bump(b.numbers[i]), b.weights[i]);
   if (sight_->tilt_error_deg > 0)
     d.emplace_back(first + tilt(), gain_ * tilted_by(side) * v.by_number[profile_angle]);
 }
@@ -203,7 +201,7 @@ void SightOfWalls::add_to(const WallLayout& layout, int first, const Walls& wall
     const ProfileNumbers& own = numbers[static_cast<std::size_t>(side)];
     const double u = u_of(s);
     const ProfileLibrary::Value v = library(side).at(u, own);
-    const double m = model(v, u, side), variance = variance_of(m), off = s.value - m;
+    const double m = model(v, u), variance = variance_of(m), off = s.value - m;
     derivatives(layout, first, s, u, v, of_errors ? slope_around(u, side, own) : v.by_u, d);
     out.value += 0.5 * off * off / variance;
     for (const auto& [i, by_i] : d) {
@@ -216,8 +214,8 @@ void SightOfWalls::add_to(const WallLayout& layout, int first, const Walls& wall
     out.pull(i) -= off / (deviation * deviation);
     out.matrix(i, i) += 1 / (deviation * deviation);
   };
-  for (int k = 0; adds_prior_ && k < bumps(); ++k)
-    prior(first_bump_ + k, bumps_[static_cast<std::size_t>(k)], bump_deviation(k));
+  for (int k = 0; k < bumps(); ++k)
+    prior(first + bump(k), bumps_[static_cast<std::size_t>(k)], bump_deviation(k));
   const double known = sight_->tilt_error_deg;
   prior(first + tilt(), tilt_off_deg_, known > 0 ? known : 1);  // 1: held, as it never moves
 }
@@ -235,7 +233,7 @@ Eigen::MatrixXd SightOfWalls::pull_of_library(const WallLayout& layout, int firs
     const int side = side_of(edge_of(s));
     const ProfileNumbers numbers = seen(walls, side);
     const ProfileLibrary::Value v = library(side).at(u, numbers);
-    const double variance = variance_of(model(v, u, side));
+    const double variance = variance_of(model(v, u));
     derivatives(layout, first, s, u, v, slope_around(u, side, numbers), d);
     const Eigen::Index from = apart && side == 1 ? places : 0;
     for (std::size_t i = 0; i < v.places.size(); ++i)
@@ -259,7 +257,7 @@ void SightOfWalls::move(const Eigen::VectorXd& step, int first) {
     for (double& x : places_[e]) x += by;
     for (double& x : raw_[e]) x += by;
   }
-  for (int k = 0; k < bumps(); ++k) bumps_[static_cast<std::size_t>(k)] += step(first_bump_ + k);
+  for (int k = 0; k < bumps(); ++k) bumps_[static_cast<std::size_t>(k)] += step(first + bump(k));
   if (sight_->tilt_error_deg > 0)
     tilt_off_deg_ += std::clamp(step(first + tilt()), -farthest_deg, farthest_deg);
 }
@@ -279,7 +277,7 @@ void SightOfWalls::place_rows(const Walls& walls) {
       const int side = side_of(edge);
       const double u = sign_of(edge) * (s.x_nm - raw_[e][r]);
       const ProfileLibrary::Value v = library(side).at(u, numbers[static_cast<std::size_t>(side)]);
-      const double m = model(v, u, side), variance = variance_of(m),
+      const double m = model(v, u), variance = variance_of(m),
                    slope = -sign_of(edge) * gain_ * v.by_u;
       pull[e][r] += slope * (s.value - m) / variance;
       weight[e][r] += slope * slope / variance;
@@ -309,7 +307,7 @@ void SightOfWalls::estimate_noise(const Walls& walls) {
   for (const ProfileSample& s : sight_->data.samples) {
     const double u = u_of(s);
     const int side = side_of(edge_of(s));
-    const double m = model(library(side).at(u, seen(walls, side)), u, side);
+    const double m = model(library(side).at(u, seen(walls, side)), u);
     const double r = (s.value - m) * (s.value - m);
     ++n, m1 += m, m2 += m * m, r1 += r, mr += m * r;
   }
@@ -335,12 +333,10 @@ SightFit SightOfWalls::result(const Walls& walls, const Eigen::MatrixXd& covaria
                          errors_[e]});
   out.profiles = profiles(walls);
   double squares = 0;
-  for (int side = 0; side < 2; ++side)
-    for (int k = 0; k < near_bumps_; ++k) {
-      const double u = sight_->left->first_u_nm() + k * options_->model_error_nm;
-      squares += std::pow(bumps_at(u, side), 2) / (2 * near_bumps_);
-    }
-  out.discrepancy_share = std::sqrt(squares) / contrast_;
+  for (int k = 0; k < near_bumps_; ++k)
+    squares += std::pow(bumps_at(sight_->left->first_u_nm() + k * options_->model_error_nm), 2) /
+               near_bumps_;
+  out.discrepancy_share = std::sqrt(squares) / (gain_ * contrast_);
   out.unexplained_share = unexplained(out.profiles);
   return out;
 }
@@ -351,8 +347,7 @@ double SightOfWalls::unexplained(const std::vector<MeanProfile>& profiles) const
     for (std::size_t i = 0; i < p.u_nm.size(); ++i) {
       if (!std::isfinite(p.measured[i])) continue;
       ++n, sum += p.measured[i], squares += p.measured[i] * p.measured[i];
-      const double by_simulation = gain_ * bumps_at(p.u_nm[i], p.material_right ? 0 : 1);
-      left += std::pow(p.measured[i] - (p.fitted[i] - by_simulation), 2);
+      left += std::pow(p.measured[i] - (p.fitted[i] - bumps_at(p.u_nm[i])), 2);
       noise += p.standard_error[i] * p.standard_error[i];
     }
   const double variation = squares - sum * sum / n - noise;
@@ -374,7 +369,7 @@ std::vector<MeanProfile> SightOfWalls::profiles(const Walls& walls) const {
       const int bin = static_cast<int>(std::floor((u - l.first_u_nm()) / step));
       if (bin < 0 || bin >= bins) continue;
       const auto b = static_cast<std::size_t>(bin);
-      const double m = model(l.at(u, numbers), u, side);
+      const double m = model(l.at(u, numbers), u);
       ++count[b], sum[b] += s.value, at[b] += u, fitted[b] += m, variance[b] += variance_of(m);
     }
     MeanProfile p;

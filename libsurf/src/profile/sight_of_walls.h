@@ -29,21 +29,13 @@ struct ProfileNormal {
 };
 
 /// One image's part of a fit. Its own numbers follow each other in the fit's vector: gain, offset,
-/// a displacement of each edge, the tilt. What the simulation is off by at some places is numbered
-/// apart: images that share libraries share it.
+/// a displacement of each edge, the simulation's error at some places, the tilt.
 class SightOfWalls {
  public:
   /// Throws InvalidInput for data without samples at an edge.
   SightOfWalls(const ProfileSight& sight, const ProfileFitOptions& options);
 
   int numbers() const { return tilt() + 1; }
-  /// How many numbers tell what the simulation is off by: walls that look different have their own.
-  int bumps() const { return static_cast<int>(bumps_.size()); }
-  /// The first of these in the fit's vector, and whether it is this image that adds their prior.
-  void number_bumps(int first, bool adds_prior) {
-    first_bump_ = first;
-    adds_prior_ = adds_prior;
-  }
   int edge(int e) const { return 2 + e; }
   int edges() const { return static_cast<int>(sight_->data.edges.size()); }
 
@@ -88,7 +80,9 @@ class SightOfWalls {
  private:
   static constexpr int all_edges = -1;
 
-  int tilt() const { return edge(edges()); }
+  int bumps() const { return static_cast<int>(bumps_.size()); }
+  int bump(int k) const { return edge(edges()) + k; }
+  int tilt() const { return bump(bumps()); }
 
   static int side_of(const ImageEdge& e) { return e.material_right ? 0 : 1; }
   static double sign_of(const ImageEdge& e) { return e.material_right ? 1 : -1; }
@@ -104,17 +98,17 @@ class SightOfWalls {
   ProfileNumbers seen(const Walls& walls, int side) const;
   double tilted_by(int side) const { return side == 0 ? -toward_x_ : toward_x_; }
 
-  /// What the simulation is off by at a place of a wall, as a sum of its numbers: those at near
-  /// places, and those at far ones.
+  /// What the simulation is off by at a place, as a sum of its numbers: those at near places, and
+  /// those at far ones.
   struct Bump {
     std::array<int, 4> numbers;
     std::array<double, 4> weights;
   };
-  Bump bump_at(double u, int side) const;
-  double bumps_at(double u, int side) const;
+  Bump bump_at(double u) const;
+  double bumps_at(double u) const;
   double bump_deviation(int number) const;
   double signal(const ProfileLibrary::Value& v) const { return v.value + 0.5 * blur2_ * v.by_u2; }
-  double model(const ProfileLibrary::Value& v, double u, int side) const;
+  double model(const ProfileLibrary::Value& v, double u) const;
   double variance_of(double level) const;
   /// All edges or one, away from their material.
   void move_outward(double by_nm, int edge = all_edges);
@@ -139,10 +133,8 @@ class SightOfWalls {
   double gain_ = 1, offset_ = 0, blur2_ = 0, contrast_ = 1, tilt_off_deg_ = 0;
   std::array<double, 2> noise_{};  // variance at level 0, and per level
   double least_variance_ = 0;
-  std::vector<double>
-      bumps_;  // of each wall that looks different: at near places, then at far ones
-  int near_bumps_ = 0, bumps_of_wall_ = 0, first_bump_ = 0;
-  bool adds_prior_ = true;
+  std::vector<double> bumps_;  // at near places, then at far ones
+  int near_bumps_ = 0;
   std::vector<std::vector<double>> places_, raw_, errors_;  // of each edge, by row
 };
 
