@@ -46,9 +46,6 @@ struct MeshArguments {
   bool quiet = false;
 };
 
-const std::vector<std::string> reading_names{"specimen.unit", "specimen.override_unit",
-                                             "scan.height_unit", "scan.height_pitch"};
-
 /// All the numbers, before a large mesh is read.
 struct Plan {
   io::SurfaceFormat format;
@@ -246,7 +243,7 @@ void add_mesh(CLI::App& app, Action& action) {
             FileRole::read);
   o->bound.looks["scan.height_unit"].former = {"--z-unit"};
   o->bound.looks["mesh.mesh_tolerance"].former = {"--tolerance", "--simplify"};
-  o->bound.add<io::SpecimenRequest>(*sub, "Reading", {}, reading_names);
+  o->bound.add<io::SpecimenRequest>(*sub, "Reading", {}, surface_readings);
   o->bound.add<workflow::GivenPitch>(*sub, "Reading");
   const auto add = [&](const char* heading, const std::vector<std::string>& names) {
     o->bound.add<MeshParameters>(*sub, heading, {}, names);

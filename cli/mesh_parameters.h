@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "surf/core/parameters.h"
 #include "surf/io/mesh_unit.h"
@@ -28,6 +30,10 @@ struct MeshParameters {
 };
 
 void describe(ParameterVisitor& visit, MeshParameters& parameters);
+
+/// The fields of a SpecimenRequest that say how surfaces are read, of meshes and of heights.
+inline const std::vector<std::string> surface_readings{"specimen.unit", "specimen.override_unit",
+                                                       "scan.height_unit", "scan.height_pitch"};
 
 /// The unit of mesh files. Throws UsageError where one overrides that is not given.
 io::MeshUnit mesh_unit_of(const io::SpecimenRequest& request);

@@ -44,9 +44,6 @@ struct ViewArguments {
   bool quiet = false;
 };
 
-const std::vector<std::string> shown_reading_names{"specimen.unit", "specimen.override_unit",
-                                                   "scan.height_unit", "scan.height_pitch"};
-
 workflow::ViewReading make_reading(const ViewArguments& o, const io::SpecimenRequest& given) {
   workflow::ViewReading r;
   o.bound.apply(static_cast<workflow::ViewParameters&>(r));
@@ -167,7 +164,7 @@ void add_view(CLI::App& app, Action& action) {
   const char* reading = "Reading";
   o->bound.looks["view.mesh_tolerance"].former = {"--tolerance"};
   o->bound.looks["view.every"].former = {"--step"};
-  o->bound.add<io::SpecimenRequest>(*sub, reading, {}, shown_reading_names);
+  o->bound.add<io::SpecimenRequest>(*sub, reading, {}, surface_readings);
   o->bound.add<workflow::GivenPitch>(*sub, reading);
   o->bound.add<workflow::ViewParameters>(*sub, "Size");
   const char* output = "Output";
