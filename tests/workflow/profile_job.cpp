@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-constexpr double energy_ev = 300, pixel_nm = 2, gain = 500, offset = 40;
+constexpr double energy_ev = 300, pixel_nm = 2, image_gain = 500, image_offset = 40;
 
 /// Lines of silicon, 40 nm wide and 30 nm high, at 300 eV.
 class ProfileJobTest : public testing::Test {
@@ -72,7 +72,7 @@ class ProfileJobTest : public testing::Test {
     image.values = Grid<double>(scan.width, scan.height);
     for (int y = 0; y < scan.height; ++y)
       for (int x = 0; x < scan.width; ++x)
-        image.values(x, y) = offset + gain * done.yield(detector, x, y).mean;
+        image.values(x, y) = image_offset + image_gain * done.yield(detector, x, y).mean;
     return image;
   }
 
@@ -106,7 +106,7 @@ TEST_F(ProfileJobTest, MeasuresLinesAndSaysHowWell) {
   EXPECT_GT(width.standard_error, 0.05);
   EXPECT_LT(width.standard_error, 1);
   EXPECT_NEAR(angle.value, 84, std::min(4.0, 3 * angle.standard_error));
-  EXPECT_NEAR(s.fit.sights.front().gain, gain, 0.2 * gain);
+  EXPECT_NEAR(s.fit.sights.front().gain, image_gain, 0.2 * image_gain);
   EXPECT_NEAR(s.pitch_nm, 100, 1);
   EXPECT_NEAR(s.threshold_widths_nm.front().value, 40, 5);
 
@@ -211,6 +211,7 @@ TEST_F(ProfileJobTest, TiltedImagesTellAHolesDepth) {
   const ProfileSummary s = run(job_);
   const Measured depth = s.fit.left[profile_height], width = s.fit.left[profile_width];
   EXPECT_LT(depth.standard_error, 4);
+  EXPECT_GT(depth.standard_error, 1.6);  // tiers of physics differ in where the bottom seems to end
   EXPECT_NEAR(depth.value, 30, 2.5 * depth.standard_error);
   EXPECT_NEAR(width.value, 44, 2);
   job_.view_settings.tilts_deg = {15, 0};

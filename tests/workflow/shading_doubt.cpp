@@ -35,9 +35,22 @@ TEST(ShadingDoubt, LeavesWhatTheDataDidNotTell) {
   EXPECT_LT(doubted({30, 0.5}, {30, 0.51}, 10).standard_error, 0.51);
 }
 
+TEST(ShadingDoubt, ImagesTellHeightsInTheirOwnWays) {
+  const double from_above = height_doubt_nm({FeatureKind::line, 100, 0, true});
+  EXPECT_EQ(from_above, 20);
+  EXPECT_EQ(height_doubt_nm({FeatureKind::hole, 50}), 10);
+  EXPECT_NEAR(height_doubt_nm({FeatureKind::hole, 50, 12}), 4, 1e-9);
+  // A flank runs farther in the image the more the beam is tilted.
+  const double little = height_doubt_nm({FeatureKind::line, 100, 3}),
+               more = height_doubt_nm({FeatureKind::line, 100, 8});
+  EXPECT_NEAR(little, 5, 0.1);
+  EXPECT_NEAR(more, 1.9, 0.1);
+  EXPECT_EQ(height_doubt_nm({FeatureKind::line, 100, 3, true}), 0);
+}
+
 TEST(ShadingDoubt, AWallThatIsHigherRunsAsFar) {
   const std::array<Measured, profile_numbers> fitted{{{70, 1}, {80, 8}, {84, 0.6}, {3, 2}, {3, 2}}};
-  const auto out = doubted_height(fitted, {100, 20});
+  const auto out = doubted_height(fitted, {100, 20}, 20);
   const auto flank = [](const auto& wall) {
     return wall[profile_height].value / std::tan(wall[profile_angle].value * std::acos(-1) / 180);
   };
@@ -49,11 +62,11 @@ TEST(ShadingDoubt, AWallThatIsHigherRunsAsFar) {
   EXPECT_GT(out[profile_angle].standard_error, 0.8);
   EXPECT_EQ(out[profile_width].value, 70);
   // A height that is held, and corners for which no other wall is there.
-  EXPECT_EQ(doubted_height(fitted, {80, 0})[profile_height].standard_error, 8);
+  EXPECT_EQ(doubted_height(fitted, {80, 0}, 16)[profile_height].standard_error, 8);
   auto round = fitted;
   round[profile_height].value = 130;
   round[profile_top].value = round[profile_foot].value = 68;
-  const auto kept = doubted_height(round, {60, 20});
+  const auto kept = doubted_height(round, {60, 20}, 12);
   EXPECT_EQ(kept[profile_height].value, 130);
   EXPECT_GT(kept[profile_height].standard_error, 9);
 }

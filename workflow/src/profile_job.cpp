@@ -259,6 +259,15 @@ void find_height(ProfileJob& job, ProfileSummary& s, const Reporter& reporter) {
       fmt::format("height by the scan: {:.2f} ± {:.2f} nm", job.height_nm, job.height_error_nm));
 }
 
+HeightEvidence evidence_of(const ProfileJob& job, const std::vector<ProfileView>& views) {
+  HeightEvidence by{job.kind, job.height_nm};
+  for (const ProfileView& v : views) {
+    by.tilt_deg = std::max(by.tilt_deg, v.tilt_deg);
+    by.one_sided = by.one_sided || (v.signal != "SE" && v.signal != "BSE");
+  }
+  return by;
+}
+
 }  // namespace
 
 ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
@@ -369,9 +378,9 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
   }
   for (const SightFit& fit : s.fit.sights)
     s.discrepancy_share = std::max(s.discrepancy_share, fit.discrepancy_share);
-  if (std::ranges::none_of(views, [](const ProfileView& v) { return v.tilt_deg > 0; }))
-    for (auto* wall : {&s.fit.left, &s.fit.right})
-      *wall = doubted_height(*wall, {job.height_nm, job.height_error_nm});
+  const double doubt_nm = height_doubt_nm(evidence_of(job, views));
+  for (auto* wall : {&s.fit.left, &s.fit.right})
+    *wall = doubted_height(*wall, {job.height_nm, job.height_error_nm}, doubt_nm);
   add_surface(image, s);
   if (job.along_x && job.kind != FeatureKind::hole) turn_surface(s);
   // The wall at the left of a gap has its ground at the right.

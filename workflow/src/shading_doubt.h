@@ -3,14 +3,23 @@
 
 #include <array>
 
+#include "surf/profile/feature_shape.h"
 #include "surf/profile/fit_profile.h"
 
 namespace surf::workflow {
 
-/// Images from above tell heights by how dark it is beside walls, in which tiers of physics differ:
-/// what they tell is uncertain by this share of the height that is expected, beside all else.
-/// Chosen on 18 lines of bench_views.
-constexpr double shading_doubt = 0.2;
+/// What images tell of heights by, in which tiers of physics differ.
+struct HeightEvidence {
+  FeatureKind kind = FeatureKind::line;
+  double height_nm = 0;    ///< that is expected
+  double tilt_deg = 0;     ///< of the beam, the largest
+  bool one_sided = false;  ///< by a detector at a side, which shows slopes
+};
+
+/// What images tell of the height is uncertain by, nm, beside all that the fit knows of (a standard
+/// deviation). From above they tell it by how dark it is beside walls, by tilted beams from how far
+/// flanks seem to run, and where a hole's bottom seems to end.
+double height_doubt_nm(const HeightEvidence& by);
 
 /// A normal prior of a number; deviation 0: it is held, infinite: nothing is known.
 struct NumberPrior {
@@ -21,10 +30,11 @@ struct NumberPrior {
 /// knew of that gave `fitted` from both.
 Measured doubted(const Measured& fitted, const NumberPrior& prior, double doubt);
 
-/// A wall's numbers by images from above, if what they tell of the height is uncertain by
-/// `shading_doubt`. They tell well how far the flank runs along x: another height goes with another
-/// angle. Where no wall of these corners is that high only the errors change.
+/// A wall's numbers, if what images tell of the height is uncertain by `doubt_nm`. They tell well
+/// how far the flank runs along x: another height goes with another angle. Where no wall of these
+/// corners is that high only the errors change.
 std::array<Measured, profile_numbers> doubted_height(
-    const std::array<Measured, profile_numbers>& fitted, const NumberPrior& height);
+    const std::array<Measured, profile_numbers>& fitted, const NumberPrior& height,
+    double doubt_nm);
 
 }  // namespace surf::workflow
