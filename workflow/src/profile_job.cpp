@@ -76,8 +76,7 @@ void check(const ProfileJob& job) {
   detectors_of(job.signal, "`profile.signal`");
   const std::vector<ProfileView> views = views_of(job);
   if (!job.views.empty() && job.kind == FeatureKind::hole &&
-      std::ranges::any_of(
-          views, [](const ProfileView& v) { return v.signal != "SE" && v.signal != "BSE"; }))
+      std::ranges::any_of(views, &ProfileView::by_side_detector))
     throw UsageError("`profile.kind`", "holes are measured by all of SE or BSE",
                      "Leave out one-sided signals");
   check_results(job.folder, job.picture);
@@ -263,7 +262,7 @@ HeightEvidence evidence_of(const ProfileJob& job, const std::vector<ProfileView>
   HeightEvidence by{job.kind, job.height_nm};
   for (const ProfileView& v : views) {
     by.tilt_deg = std::max(by.tilt_deg, v.tilt_deg);
-    by.one_sided = by.one_sided || (v.signal != "SE" && v.signal != "BSE");
+    by.by_side_detector = by.by_side_detector || v.by_side_detector();
   }
   return by;
 }

@@ -132,8 +132,7 @@ Signals simulate_wall_signals(const ProfileJob& job, WallSimulation how, const P
 
 bool ProfileView::one_sided() const {
   constexpr double least = 1e-9;
-  return (tilt_deg > 0 && std::abs(std::cos(azimuth_deg * degree)) > least) ||
-         (signal != "SE" && signal != "BSE");
+  return (tilt_deg > 0 && std::abs(std::cos(azimuth_deg * degree)) > least) || by_side_detector();
 }
 
 bool ProfileView::sees_as(ProfileView other) const {

@@ -20,6 +20,7 @@ struct ProfileView {
   double cut_deg = 0;
 
   friend bool operator==(const ProfileView&, const ProfileView&) = default;
+  bool by_side_detector() const { return signal != "SE" && signal != "BSE"; }
   /// Whether left and right walls give other signals.
   bool one_sided() const;
   /// Whether walls give the same signals as in that image.

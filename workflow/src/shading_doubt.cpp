@@ -10,16 +10,16 @@
 namespace surf::workflow {
 namespace {
 
-constexpr double from_above = 0.2;       // of the height; chosen on 18 lines of bench_views
-constexpr double bottom_of_hole = 0.08;  // whatever the tilt; chosen on 3 holes of bench_profile
-constexpr double flank_nm = 0.26;        // in the image; chosen on 3 lines of bench_views
+constexpr double from_above = 0.2;        // of the height; chosen on 18 lines of bench_views
+constexpr double bottom_of_hole = 0.08;   // of the depth, at any tilt; 3 holes of bench_profile
+constexpr double end_of_flank_nm = 0.26;  // in the image; chosen on 3 lines of bench_views
 
 }  // namespace
 
 double height_doubt_nm(const HeightEvidence& by) {
   if (by.tilt_deg == 0) return from_above * by.height_nm;
   if (by.kind == FeatureKind::hole) return bottom_of_hole * by.height_nm;
-  return by.one_sided ? 0 : flank_nm / std::sin(by.tilt_deg * degrees_to_radians);
+  return by.by_side_detector ? 0 : end_of_flank_nm / std::sin(by.tilt_deg * degrees_to_radians);
 }
 
 Measured doubted(const Measured& fitted, const NumberPrior& prior, double doubt) {

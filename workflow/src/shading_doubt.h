@@ -11,9 +11,9 @@ namespace surf::workflow {
 /// What images tell of heights by, in which tiers of physics differ.
 struct HeightEvidence {
   FeatureKind kind = FeatureKind::line;
-  double height_nm = 0;    ///< that is expected
-  double tilt_deg = 0;     ///< of the beam, the largest
-  bool one_sided = false;  ///< by a detector at a side, which shows slopes
+  double height_nm = 0;           ///< that is expected
+  double tilt_deg = 0;            ///< of the beam, the largest
+  bool by_side_detector = false;  ///< which shows slopes
 };
 
 /// What images tell of the height is uncertain by, nm, beside all that the fit knows of (a standard
