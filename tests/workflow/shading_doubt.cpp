@@ -46,6 +46,9 @@ TEST(ShadingDoubt, ImagesTellHeightsInTheirOwnWays) {
   EXPECT_NEAR(little, 5, 0.1);
   EXPECT_NEAR(more, 1.9, 0.1);
   EXPECT_EQ(height_doubt_nm({FeatureKind::line, 100, 3, true}), 0);
+  // The image from above still tells what it tells alone.
+  EXPECT_EQ(height_doubt_nm({FeatureKind::line, 100, 0.1}), from_above);
+  EXPECT_EQ(height_doubt_nm({FeatureKind::line, 20, 3}), 4);
 }
 
 TEST(ShadingDoubt, AWallThatIsHigherRunsAsFar) {
