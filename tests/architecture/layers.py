@@ -70,7 +70,7 @@ THIRD_PARTY = [
                  "libsurf/src/reconstruction/tilt_by_sem.cpp", "libsurf/src/registration/correlation.cpp", "libsurf/src/registration/landmarks.cpp",
                  "libsurf/src/registration/uncertainty.cpp", "libsurf/src/sem/calibration/calibration.cpp",
                  "libsurf/src/sem/facet/fit_filter_bank.cpp", "libsurf/src/sem/noise/flat_samples.cpp",
-                 "libsurf/src/profile/fit_profile.cpp", "libsurf/src/profile/sight_of_walls.*", "libsurf/src/reconstruction/damped_steps.h", "libsurf/src/profile/profile_library.cpp", "libsurf/src/refinement/fit_modes.cpp", "libsurf/src/sem/model/film_model.cpp", "libsurf/src/sem/network/network_trainer.cpp"]),
+                 "libsurf/src/profile/fit_profile.cpp", "libsurf/src/profile/sight_of_walls.*", "libsurf/src/profile/simulation_errors.*", "libsurf/src/reconstruction/damped_steps.h", "libsurf/src/profile/profile_library.cpp", "libsurf/src/refinement/fit_modes.cpp", "libsurf/src/sem/model/film_model.cpp", "libsurf/src/sem/network/network_trainer.cpp"]),
     # In correlation.cpp only what needs no library.
     ("ceres/*", ["libsurf/src/sem/minimise/ceres_module.cpp", "libsurf/src/registration/correlation.cpp"]),
     ("cholmod.h", ["libsurf/src/reconstruction/cholmod_module.cpp"]),

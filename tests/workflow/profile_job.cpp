@@ -199,7 +199,7 @@ TEST_F(ProfileJobTest, FurtherImagesHaveTheirOwnTiltsAndSignals) {
 TEST_F(ProfileJobTest, TiltedImagesTellAHolesDepth) {
   job_.kind = FeatureKind::hole;
   job_.sem.image = hole();
-  job_.height_nm = 24, job_.height_error_nm = 6;
+  job_.height_nm = 26, job_.height_error_nm = 4;
   job_.views.resize(2);
   job_.views[0].image = hole(15, 90);
   job_.views[1].image = hole(15, 270);

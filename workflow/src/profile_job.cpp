@@ -27,7 +27,7 @@ constexpr double largest_discrepancy = 3;  // over the allowed one
 constexpr double most_unexplained = 0.6;   // of the variation of mean profiles
 constexpr double pitch_of_scans = 0.005;   // what scans' heights are calibrated to
 constexpr double far_off = 2.5;            // standard errors of what was said
-constexpr int more_rounds = 2;             // where a number lies at the border of the last box
+constexpr int more_rounds = 3;             // where a number lies far from the middle of its box
 constexpr std::int64_t finer = 4;          // electrons of the last box over those of the others
 
 /// A quadrant as it lies in an image whose x and y are exchanged.
@@ -303,6 +303,10 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
           same_scan ? s.threshold.edges : find_edges(view, job.kind, job.threshold).edges));
     }
   }
+  for (std::size_t k = 0; k < sights.size(); ++k)
+    sights[k].signal = static_cast<int>(
+        std::ranges::find_if(views, [&](const ProfileView& v) { return v.shows_as(views[k]); }) -
+        views.begin());
   s.threshold_widths_nm = threshold_widths(s.threshold, job.kind);
   double width = 100;
   if (job.kind != FeatureKind::edge) {
@@ -324,10 +328,10 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
   options.prior_deviation = {unknown, job.height_error_nm, unknown, first.half[profile_top],
                              first.half[profile_foot]};
   ProfileBox box = first;
-  for (int round = 0; round < job.rounds || (round < job.rounds + more_rounds && s.fit.at_border);
-       ++round) {
+  int left = job.rounds, more = more_rounds;
+  for (int round = 0; left > 0; ++round) {
     begin(reporter, "simulation");
-    const bool last = round + 1 >= job.rounds;
+    const bool last = left == 1;
     std::vector<WallSignals> signals;
     std::vector<std::size_t> like;  // the first image that sees walls as each does
     for (std::size_t k = 0; k < views.size(); ++k) {
@@ -353,6 +357,7 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
       const MatchedShape match = matched_shape(job, sights, signals, options, reporter.watch());
       box = match.box;
       s.other_side = match.other_side;
+      --left;
       continue;
     }
     std::vector<ProfileLibrary> walls;
@@ -373,6 +378,9 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
     for (std::size_t k = 0; k < sights.size(); ++k)
       for (std::size_t e = 0; e < sights[k].data.edges.size(); ++e)
         sights[k].data.edges[e].place_nm = s.fit.sights[k].edges[e].place_nm.value;
+    const bool far = s.fit.at_border || leaves(s.fit, box, first, last ? 0.8 : 0.5);
+    if (far && more > 0) --more;
+    else --left;
     box = next_box(box, first, s.fit);
   }
   for (const SightFit& fit : s.fit.sights)

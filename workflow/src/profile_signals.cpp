@@ -105,7 +105,8 @@ Signals simulate_wall_signals(const ProfileJob& job, WallSimulation how, const P
   how.electrons = electrons;
   how.threads = 1;
   how.seed = seed;
-  Signals out{box, how.first_u_nm, how.step_nm, shapes_of(job, box, pitch_nm), {}, {}};
+  Signals out{
+      box, how.first_u_nm, how.step_nm, blurred_by_nm(how), shapes_of(job, box, pitch_nm), {}, {}};
   out.signals.resize(out.shapes.size());
   Watch quiet;
   quiet.cancel = watch.cancel;
@@ -171,22 +172,36 @@ ProfileBox next_box(const ProfileBox& before, const ProfileBox& first, const Pro
     box.middle[k] = 0.5 * (fit.left[k].value + fit.right[k].value);
     const double error = std::max(fit.left[k].standard_error, fit.right[k].standard_error);
     // A number at the border, or one that the image hardly tells, needs more room.
-    box.half[k] = std::max({fit.at_border ? before.half[k] : narrower * before.half[k],
+    const bool outside = std::abs(box.middle[k] - before.middle[k]) > before.half[k];
+    box.half[k] = std::max({fit.at_border || outside ? before.half[k] : narrower * before.half[k],
                             apart + 0.2 * first.half[k], std::min(2 * error, first.half[k])});
     if (k == profile_top || k == profile_foot) box.middle[k] = std::max(box.middle[k], box.half[k]);
   }
   return box;
 }
 
+bool leaves(const ProfileFit& fit, const ProfileBox& box, const ProfileBox& first, double share) {
+  for (const auto* wall : {&fit.left, &fit.right})
+    for (std::size_t k = 0; k < profile_numbers; ++k) {
+      const double off = (*wall)[k].value - box.middle[k],
+                   end = box.middle[k] + std::copysign(box.half[k], off);
+      if (std::abs(off) > std::max(share * box.half[k], (*wall)[k].standard_error) &&
+          std::abs(end - first.middle[k]) < first.half[k])
+        return true;
+    }
+  return false;
+}
+
 ProfileLibrary Signals::library() const {
-  return {box, first_u_nm, step_nm, shapes, signals, middle};
+  return {box, first_u_nm, step_nm, shapes, signals, middle, blurred_by_nm};
 }
 
 ProfileLibrary Signals::alone(std::size_t shape) const {
   FinerMiddle own = middle;
   for (std::size_t u = 0; u < own.signal.size(); ++u)
     own.signal[u] += signals[shape][u] - signals[0][u];
-  return {{shapes[shape], {}}, first_u_nm, step_nm, {shapes[shape]}, {signals[shape]}, own};
+  return {{shapes[shape], {}}, first_u_nm, step_nm,      {shapes[shape]},
+          {signals[shape]},    own,        blurred_by_nm};
 }
 
 WallSignals simulate_signals(const ProfileJob& job, const ProfileView& view, const ProfileBox& box,
@@ -260,11 +275,10 @@ MatchedShape matched_shape(const ProfileJob& job, const std::vector<ProfileSight
   out.box = first.box;
   const auto best = std::ranges::min_element(unlike);
   const ProfileNumbers& shape = first.shapes[static_cast<std::size_t>(best - unlike.begin())];
-  for (std::size_t k = 0; k < profile_numbers; ++k) {
+  // Corners matter too little for the best match to tell them.
+  for (const std::size_t k : {profile_width, profile_height, profile_angle}) {
     out.box.half[k] *= matched;
     if (k != profile_width) out.box.middle[k] = shape[k];
-    if (k == profile_top || k == profile_foot)
-      out.box.middle[k] = std::max(out.box.middle[k], out.box.half[k]);
   }
   double least = clearly_less * *best;
   for (const std::vector<std::size_t>& group : swappable(sights, signals))

@@ -23,6 +23,10 @@ struct ProfileView {
   bool by_side_detector() const { return signal != "SE" && signal != "BSE"; }
   /// Whether left and right walls give other signals.
   bool one_sided() const;
+  /// Whether it shows the same signal at the same energy as that image.
+  bool shows_as(const ProfileView& other) const {
+    return signal == other.signal && energy_ev == other.energy_ev;
+  }
   /// Whether walls give the same signals as in that image.
   bool sees_as(ProfileView other) const;
 };
@@ -52,10 +56,14 @@ ProfileBox first_box(const ProfileJob& job, double width_nm);
 /// A smaller box about what was found.
 ProfileBox next_box(const ProfileBox& before, const ProfileBox& first, const ProfileFit& fit);
 
+/// Whether a number lies further from the box's middle than this share of its half sizes and than
+/// its own error, where the first box goes on: no quadratic function holds so far away.
+bool leaves(const ProfileFit& fit, const ProfileBox& box, const ProfileBox& first, double share);
+
 /// Simulated signals of a box's shapes across one wall, the middle shape's first.
 struct Signals {
   ProfileBox box;
-  double first_u_nm = 0, step_nm = 1;
+  double first_u_nm = 0, step_nm = 1, blurred_by_nm = 0;
   std::vector<ProfileNumbers> shapes;
   std::vector<std::vector<double>> signals;
   FinerMiddle middle;

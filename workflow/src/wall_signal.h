@@ -39,4 +39,8 @@ struct WallSignal {
 WallSignal simulate_wall(const FeatureShape& shape, const WallSimulation& simulation,
                          mc::LibrarySource& libraries, const Watch& watch = {});
 
+/// Standard deviation of the spot where it is a sum over neighbouring places, whose errors are not
+/// independent then; 0: electrons are drawn from the spot, which is small.
+double blurred_by_nm(const WallSimulation& simulation);
+
 }  // namespace surf::workflow

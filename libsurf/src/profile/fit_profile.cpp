@@ -21,8 +21,7 @@ constexpr double beyond_box = 1.2;  // of the box's half sizes: further away no 
 class Fit {
  public:
   Fit(const std::vector<ProfileSight>& sights, const ProfileFitOptions& options)
-      : options_(options) {
-    if (sights.empty()) throw InvalidInput("SEM image", "there is none", "Give one");
+      : options_(options), errors_(errors_of(sights, options)) {
     box_ = sights.front().left->box();
     for (std::size_t k = 0; k < profile_numbers; ++k)
       if (k != profile_width && options.prior_deviation[k] > 0 && box_.half[k] > 0)
@@ -34,11 +33,12 @@ class Fit {
         if (k != profile_width && options.prior_deviation[k] == 0) side[k] = options.prior_mean[k];
     for (const ProfileSight& sight : sights) {
       first_.push_back(all_);
-      sights_.emplace_back(sight, options);
+      sights_.emplace_back(sight, options, errors_);
       all_ += sights_.back().numbers();
     }
-    for (int& first : first_) first += layout_.all();
-    all_ += layout_.all();
+    const int before = layout_.errors() + errors_.numbers();
+    for (int& first : first_) first += before;
+    all_ += before;
     width_now();
     for (SightOfWalls& sight : sights_) sight.begin(walls_);
     width_now();
@@ -78,6 +78,17 @@ class Fit {
   }
 
  private:
+  static SimulationErrors errors_of(const std::vector<ProfileSight>& sights,
+                                    const ProfileFitOptions& options) {
+    if (sights.empty()) throw InvalidInput("SEM image", "there is none", "Give one");
+    double first = HUGE_VAL, last = -HUGE_VAL;
+    for (const ProfileSight& sight : sights) {
+      first = std::min(first, sight.left->first_u_nm());
+      last = std::max(last, sight.left->last_u_nm());
+    }
+    return {first, last, options.model_error_nm};
+  }
+
   static bool one_side_only(const std::vector<ProfileSight>& sights) {
     const auto right = [](const ImageEdge& e) { return e.material_right; };
     const auto all = [&](auto holds) {
@@ -117,6 +128,7 @@ class Fit {
     ProfileNormal out{Eigen::MatrixXd::Zero(all_, all_), Eigen::VectorXd::Zero(all_), 0};
     for (std::size_t k = 0; k < sights_.size(); ++k)
       sights_[k].add_to(layout_, first_[k], walls_, of_errors, out);
+    errors_.add_prior(layout_.errors(), out.value, out.pull, out.matrix);
     for (int side = 0; side < layout_.walls; ++side)
       for (std::size_t k = 0; k < layout_.free.size(); ++k) {
         const std::size_t number = layout_.free[k];
@@ -141,6 +153,7 @@ class Fit {
         value = clamped(number, value + step(layout_.wall(side) + static_cast<int>(k)));
       }
     if (layout_.walls == 1) walls_[1] = walls_[0];
+    errors_.move(step, layout_.errors());
     for (std::size_t k = 0; k < sights_.size(); ++k) sights_[k].move(step, first_[k]);
     width_now();
   }
@@ -151,10 +164,11 @@ class Fit {
     const Eigen::VectorXd step = now.matrix.ldlt().solve(now.pull);
     const Walls walls = walls_;
     const std::vector<SightOfWalls> sights = sights_;
+    const SimulationErrors errors = errors_;
     for (double share = 1; share > 1e-3; share *= 0.3) {
       move(share * step);
       if (normal().value < now.value + 1e-9 * std::abs(now.value)) return step.norm() > 1e-6;
-      walls_ = walls, sights_ = sights;
+      walls_ = walls, sights_ = sights, errors_ = errors;
     }
     return false;
   }
@@ -270,6 +284,7 @@ class Fit {
   ProfileBox box_;
   WallLayout layout_;
   Walls walls_{};
+  SimulationErrors errors_;
   std::vector<SightOfWalls> sights_;
   std::vector<int> first_;  // of each image's numbers
   int all_ = 0;

@@ -42,6 +42,19 @@ struct Cubic {
   }
 };
 
+/// Of a normal distribution: at its middle, at the next place, and so on.
+std::vector<double> weights_of(double deviation) {
+  constexpr double farthest = 4;
+  std::vector<double> out{1};
+  double sum = 1;
+  for (int k = 1; k <= farthest * deviation; ++k) {
+    out.push_back(std::exp(-0.5 * std::pow(k / deviation, 2)));
+    sum += 2 * out.back();
+  }
+  for (double& w : out) w /= sum;
+  return out;
+}
+
 /// A number's effect on the signal counts as far as it is more than chance around (Wiener): chance
 /// in each place would look like something that the image tells.
 void keep_what_shows(Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> effect,
@@ -78,8 +91,9 @@ std::vector<ProfileNumbers> profile_design(const ProfileBox& box, double per_ter
 ProfileLibrary::ProfileLibrary(ProfileBox box, double first_u_nm, double step_nm,
                                const std::vector<ProfileNumbers>& shapes,
                                const std::vector<std::vector<double>>& signals,
-                               const FinerMiddle& middle)
-    : box_(box), first_(first_u_nm), step_(step_nm), free_(free_numbers(box)) {
+                               const FinerMiddle& middle, double blurred_by_nm)
+    : box_(box), first_(first_u_nm), step_(step_nm), free_(free_numbers(box)),
+      blur_(weights_of(blurred_by_nm / step_nm)) {
   terms_ = terms_of(free_.size());
   if (shapes.size() != signals.size() || shapes.size() < terms_)
     throw InvalidInput("profiles", "there are fewer shapes than terms", "Simulate more");
@@ -116,13 +130,16 @@ ProfileLibrary::ProfileLibrary(ProfileBox box, double first_u_nm, double step_nm
           .solve(Eigen::MatrixXd::Identity(design.cols(), design.cols()));
   for (Eigen::Index k = 1; k < fit.rows(); ++k)
     keep_what_shows(fit.row(k), noise.transpose() * inverse(k, k));
+  double squares = 0;
+  for (std::size_t k = 0; k < blur_.size(); ++k) squares += (k == 0 ? 1 : 2) * blur_[k] * blur_[k];
   for (std::size_t u = 0; u < count_; ++u) {
     const auto column = static_cast<Eigen::Index>(u);
     if (finer) fit(0, column) = middle.signal[u];
     for (std::size_t k = 0; k < terms_; ++k)
       coefficients_.push_back(fit(static_cast<Eigen::Index>(k), column));
-    variance_.push_back(noise(column) * fitted / static_cast<double>(shapes.size()) +
-                        (finer ? middle.variance[u] : 0));
+    variance_.push_back((noise(column) * fitted / static_cast<double>(shapes.size()) +
+                         (finer ? middle.variance[u] : 0)) /
+                        squares);
   }
 }
 

@@ -14,8 +14,6 @@ namespace {
 
 constexpr int row_steps = 2, fewest_pixels = 16;
 constexpr double least_weight = 0.1;  // of the usual row's: rows that tell less are not seen
-// Physics and detectors also differ in how bright ground and top are, over tens of nanometres.
-constexpr double farther = 10, far_share = 1;  // of the near places' distance and error
 constexpr double degree = std::numbers::pi / 180;
 
 double median_of(std::vector<double> v) {
@@ -24,21 +22,32 @@ double median_of(std::vector<double> v) {
   return *middle;
 }
 
+/// From what values at places do to what their independent errors, of one deviation, do.
+void spread(Eigen::Ref<Eigen::MatrixXd> pull, const ProfileLibrary& library) {
+  const Eigen::MatrixXd by_values = pull;
+  const std::vector<double>& blur = library.blur();
+  const auto reach = static_cast<Eigen::Index>(blur.size()) - 1;
+  for (Eigen::Index k = 0; k < pull.cols(); ++k) {
+    pull.col(k).setZero();
+    for (Eigen::Index other = std::max<Eigen::Index>(0, k - reach);
+         other <= std::min(pull.cols() - 1, k + reach); ++other)
+      pull.col(k) += blur[static_cast<std::size_t>(std::abs(other - k))] * by_values.col(other);
+    pull.col(k) *= std::sqrt(library.variances()[static_cast<std::size_t>(k)]);
+  }
+}
+
 }  // namespace
 
-SightOfWalls::SightOfWalls(const ProfileSight& sight, const ProfileFitOptions& options)
-    : sight_(&sight), options_(&options) {
+SightOfWalls::SightOfWalls(const ProfileSight& sight, const ProfileFitOptions& options,
+                           SimulationErrors& errors)
+    : sight_(&sight), options_(&options), simulation_(&errors) {
   const double a = sight.azimuth_deg * degree, t = sight.tilt_deg * degree;
   toward_x_ = std::cos(a);
   const double x = std::sin(t) * std::cos(a);
   shortening_ = 1 - x * x / (1 + std::cos(t));
-  const ProfileLibrary& l = *sight.left;
-  const double range_nm = l.last_u_nm() - l.first_u_nm();
-  near_bumps_ = 1 + static_cast<int>(std::ceil(range_nm / options.model_error_nm));
-  bumps_.assign(
-      static_cast<std::size_t>(near_bumps_ + 1) +
-          static_cast<std::size_t>(std::ceil(range_nm / (farther * options.model_error_nm))),
-      0);
+  for (const int side : {0, 1})
+    looks_[static_cast<std::size_t>(side)] =
+        errors.look({sight.signal, sight.tilt_deg * tilted_by(side), sight.tilt_deg * std::sin(a)});
   const auto rows = static_cast<std::size_t>(sight.data.rows);
   for (const ImageEdge& e : sight.data.edges) {
     places_.emplace_back(rows, e.place_nm);
@@ -80,35 +89,8 @@ ProfileNumbers SightOfWalls::seen(const Walls& walls, int side) const {
   return numbers;
 }
 
-SightOfWalls::Bump SightOfWalls::bump_at(double u) const {
-  const auto among = [&](double distance_nm, int count) {
-    const double at = std::clamp((u - sight_->left->first_u_nm()) / distance_nm, 0.0,
-                                 static_cast<double>(count - 1) - 1e-9);
-    const int first = static_cast<int>(at);
-    return std::pair(first, at - first);
-  };
-  const auto [near, near_share] = among(options_->model_error_nm, near_bumps_);
-  const auto [far, far_share] = among(farther * options_->model_error_nm, bumps() - near_bumps_);
-  return {{near, near + 1, near_bumps_ + far, near_bumps_ + far + 1},
-          {1 - near_share, near_share, 1 - far_share, far_share}};
-}
-
-double SightOfWalls::bumps_at(double u) const {
-  const Bump b = bump_at(u);
-  double sum = 0;
-  for (std::size_t i = 0; i < b.numbers.size(); ++i)
-    sum += b.weights[i] * bumps_[static_cast<std::size_t>(b.numbers[i])];
-  return sum;
-}
-
-double SightOfWalls::bump_deviation(int number) const {
-  constexpr double least = 1e-6;  // a prior of no width has no inverse
-  const double share = number < near_bumps_ ? 1 : far_share;
-  return gain_ * std::max(options_->model_error * share, least) * contrast_;
-}
-
-double SightOfWalls::model(const ProfileLibrary::Value& v, double u) const {
-  return gain_ * signal(v) + offset_ + bumps_at(u);
+double SightOfWalls::model(const ProfileLibrary::Value& v, double u, int side) const {
+  return gain_ * (signal(v) + off_by(u, side)) + offset_;
 }
 
 double SightOfWalls::variance_of(double level) const {
@@ -144,6 +126,9 @@ void SightOfWalls::begin(const Walls& walls) {
     for (int e = 0; e < edges(); ++e) search(walls, sight_->search_nm, e);
   else search(walls, thresholds_off_nm);
   scale(walls);
+  constexpr double least = 1e-6;  // a prior of no width has no inverse
+  for (const int look : looks_)
+    simulation_->set_deviation(look, std::max(options_->model_error, least) * contrast_);
 }
 
 double SightOfWalls::scale(const Walls& walls, int edge) {
@@ -180,14 +165,14 @@ void SightOfWalls::derivatives(const WallLayout& layout, int first, const Profil
                                Derivatives& d) const {
   const int side = side_of(edge_of(s));
   d.clear();
-  d.emplace_back(first, signal(v) * gain_);  // of the gain's logarithm
+  d.emplace_back(first, (signal(v) + off_by(u, side)) * gain_);  // of the gain's logarithm
   d.emplace_back(first + 1, 1);
   for (std::size_t k = 0; k < layout.free.size(); ++k)
     d.emplace_back(layout.wall(side) + static_cast<int>(k), gain_ * v.by_number[layout.free[k]]);
   d.emplace_back(first + edge(s.edge), -sign_of(edge_of(s)) * gain_ * slope);
-  const Bump b = bump_at(u);
-  for (std::size_t i = 0; i < b.numbers.size(); ++i)
-    d.emplace_back(first + bump(b.numbers[i]), b.weights[i]);
+  const SimulationErrors::Sum sum = simulation_->at(looks_[static_cast<std::size_t>(side)], u);
+  for (std::size_t i = 0; i < sum.numbers.size(); ++i)
+    d.emplace_back(layout.errors() + sum.numbers[i], gain_ * sum.weights[i]);
   if (sight_->tilt_error_deg > 0)
     d.emplace_back(first + tilt(), gain_ * tilted_by(side) * v.by_number[profile_angle]);
 }
@@ -201,7 +186,7 @@ void SightOfWalls::add_to(const WallLayout& layout, int first, const Walls& wall
     const ProfileNumbers& own = numbers[static_cast<std::size_t>(side)];
     const double u = u_of(s);
     const ProfileLibrary::Value v = library(side).at(u, own);
-    const double m = model(v, u), variance = variance_of(m), off = s.value - m;
+    const double m = model(v, u, side), variance = variance_of(m), off = s.value - m;
     derivatives(layout, first, s, u, v, of_errors ? slope_around(u, side, own) : v.by_u, d);
     out.value += 0.5 * off * off / variance;
     for (const auto& [i, by_i] : d) {
@@ -214,8 +199,6 @@ void SightOfWalls::add_to(const WallLayout& layout, int first, const Walls& wall
     out.pull(i) -= off / (deviation * deviation);
     out.matrix(i, i) += 1 / (deviation * deviation);
   };
-  for (int k = 0; k < bumps(); ++k)
-    prior(first + bump(k), bumps_[static_cast<std::size_t>(k)], bump_deviation(k));
   const double known = sight_->tilt_error_deg;
   prior(first + tilt(), tilt_off_deg_, known > 0 ? known : 1);  // 1: held, as it never moves
 }
@@ -223,17 +206,16 @@ void SightOfWalls::add_to(const WallLayout& layout, int first, const Walls& wall
 Eigen::MatrixXd SightOfWalls::pull_of_library(const WallLayout& layout, int first,
                                               const Walls& walls, int all) const {
   const bool apart = sight_->left != sight_->right;
-  const std::vector<double>&left = sight_->left->variances(), &right = sight_->right->variances();
-  const auto places = static_cast<Eigen::Index>(left.size());
-  Eigen::MatrixXd pull =
-      Eigen::MatrixXd::Zero(all, apart ? places + static_cast<Eigen::Index>(right.size()) : places);
+  const auto places = static_cast<Eigen::Index>(sight_->left->variances().size());
+  Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(
+      all, apart ? places + static_cast<Eigen::Index>(sight_->right->variances().size()) : places);
   Derivatives d;
   for (const ProfileSample& s : sight_->data.samples) {
     const double u = u_of(s);
     const int side = side_of(edge_of(s));
     const ProfileNumbers numbers = seen(walls, side);
     const ProfileLibrary::Value v = library(side).at(u, numbers);
-    const double variance = variance_of(model(v, u));
+    const double variance = variance_of(model(v, u, side));
     derivatives(layout, first, s, u, v, slope_around(u, side, numbers), d);
     const Eigen::Index from = apart && side == 1 ? places : 0;
     for (std::size_t i = 0; i < v.places.size(); ++i)
@@ -241,9 +223,8 @@ Eigen::MatrixXd SightOfWalls::pull_of_library(const WallLayout& layout, int firs
         pull(number, from + static_cast<Eigen::Index>(v.places[i])) +=
             by_number * gain_ * v.weights[i] / variance;
   }
-  for (Eigen::Index k = 0; k < pull.cols(); ++k)
-    pull.col(k) *= std::sqrt(k < places ? left[static_cast<std::size_t>(k)]
-                                        : right[static_cast<std::size_t>(k - places)]);
+  spread(pull.leftCols(places), *sight_->left);
+  if (apart) spread(pull.rightCols(pull.cols() - places), *sight_->right);
   return pull;
 }
 
@@ -257,7 +238,6 @@ void SightOfWalls::move(const Eigen::VectorXd& step, int first) {
     for (double& x : places_[e]) x += by;
     for (double& x : raw_[e]) x += by;
   }
-  for (int k = 0; k < bumps(); ++k) bumps_[static_cast<std::size_t>(k)] += step(first + bump(k));
   if (sight_->tilt_error_deg > 0)
     tilt_off_deg_ += std::clamp(step(first + tilt()), -farthest_deg, farthest_deg);
 }
@@ -277,7 +257,7 @@ void SightOfWalls::place_rows(const Walls& walls) {
       const int side = side_of(edge);
       const double u = sign_of(edge) * (s.x_nm - raw_[e][r]);
       const ProfileLibrary::Value v = library(side).at(u, numbers[static_cast<std::size_t>(side)]);
-      const double m = model(v, u), variance = variance_of(m),
+      const double m = model(v, u, side), variance = variance_of(m),
                    slope = -sign_of(edge) * gain_ * v.by_u;
       pull[e][r] += slope * (s.value - m) / variance;
       weight[e][r] += slope * slope / variance;
@@ -307,7 +287,7 @@ void SightOfWalls::estimate_noise(const Walls& walls) {
   for (const ProfileSample& s : sight_->data.samples) {
     const double u = u_of(s);
     const int side = side_of(edge_of(s));
-    const double m = model(library(side).at(u, seen(walls, side)), u);
+    const double m = model(library(side).at(u, seen(walls, side)), u, side);
     const double r = (s.value - m) * (s.value - m);
     ++n, m1 += m, m2 += m * m, r1 += r, mr += m * r;
   }
@@ -333,10 +313,11 @@ SightFit SightOfWalls::result(const Walls& walls, const Eigen::MatrixXd& covaria
                          errors_[e]});
   out.profiles = profiles(walls);
   double squares = 0;
-  for (int k = 0; k < near_bumps_; ++k)
-    squares += std::pow(bumps_at(sight_->left->first_u_nm() + k * options_->model_error_nm), 2) /
-               near_bumps_;
-  out.discrepancy_share = std::sqrt(squares) / (gain_ * contrast_);
+  const ProfileLibrary& l = *sight_->left;
+  int places = 0;
+  for (double u = l.first_u_nm(); u <= l.last_u_nm(); u += options_->model_error_nm, ++places)
+    for (const int side : {0, 1}) squares += 0.5 * std::pow(off_by(u, side), 2);
+  out.discrepancy_share = std::sqrt(squares / places) / contrast_;
   out.unexplained_share = unexplained(out.profiles);
   return out;
 }
@@ -347,7 +328,8 @@ double SightOfWalls::unexplained(const std::vector<MeanProfile>& profiles) const
     for (std::size_t i = 0; i < p.u_nm.size(); ++i) {
       if (!std::isfinite(p.measured[i])) continue;
       ++n, sum += p.measured[i], squares += p.measured[i] * p.measured[i];
-      left += std::pow(p.measured[i] - (p.fitted[i] - bumps_at(p.u_nm[i])), 2);
+      const double by_simulation = gain_ * off_by(p.u_nm[i], p.material_right ? 0 : 1);
+      left += std::pow(p.measured[i] - (p.fitted[i] - by_simulation), 2);
       noise += p.standard_error[i] * p.standard_error[i];
     }
   const double variation = squares - sum * sum / n - noise;
@@ -369,7 +351,7 @@ std::vector<MeanProfile> SightOfWalls::profiles(const Walls& walls) const {
       const int bin = static_cast<int>(std::floor((u - l.first_u_nm()) / step));
       if (bin < 0 || bin >= bins) continue;
       const auto b = static_cast<std::size_t>(bin);
-      const double m = model(l.at(u, numbers), u);
+      const double m = model(l.at(u, numbers), u, side);
       ++count[b], sum[b] += s.value, at[b] += u, fitted[b] += m, variance[b] += variance_of(m);
     }
     MeanProfile p;

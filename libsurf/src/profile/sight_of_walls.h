@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "simulation_errors.h"
 #include "surf/profile/fit_profile.h"
 
 namespace surf {
@@ -13,13 +14,14 @@ namespace surf {
 /// Numbers of walls with the ground at their left, and at their right.
 using Walls = std::array<ProfileNumbers, 2>;
 
-/// The numbers of a fit in one vector: the walls', then those of each image.
+/// The numbers of a fit in one vector: the walls', those of the simulation's errors, then those of
+/// each image.
 struct WallLayout {
   std::vector<std::size_t> free;  ///< numbers of a wall that are fitted
   int walls = 1;                  ///< 2: left and right walls have their own
 
   int wall(int side) const { return (walls == 1 ? 0 : side) * static_cast<int>(free.size()); }
-  int all() const { return walls * static_cast<int>(free.size()); }
+  int errors() const { return walls * static_cast<int>(free.size()); }
 };
 
 struct ProfileNormal {
@@ -29,11 +31,13 @@ struct ProfileNormal {
 };
 
 /// One image's part of a fit. Its own numbers follow each other in the fit's vector: gain, offset,
-/// a displacement of each edge, the simulation's error at some places, the tilt.
+/// a displacement of each edge, the tilt. What the simulation is off by is of all images.
 class SightOfWalls {
  public:
-  /// Throws InvalidInput for data without samples at an edge.
-  SightOfWalls(const ProfileSight& sight, const ProfileFitOptions& options);
+  /// Adds its looks at walls to the simulation's errors, which must outlive it. Throws InvalidInput
+  /// for data without samples at an edge.
+  SightOfWalls(const ProfileSight& sight, const ProfileFitOptions& options,
+               SimulationErrors& errors);
 
   int numbers() const { return tilt() + 1; }
   int edge(int e) const { return 2 + e; }
@@ -80,9 +84,7 @@ class SightOfWalls {
  private:
   static constexpr int all_edges = -1;
 
-  int bumps() const { return static_cast<int>(bumps_.size()); }
-  int bump(int k) const { return edge(edges()) + k; }
-  int tilt() const { return bump(bumps()); }
+  int tilt() const { return edge(edges()); }
 
   static int side_of(const ImageEdge& e) { return e.material_right ? 0 : 1; }
   static double sign_of(const ImageEdge& e) { return e.material_right ? 1 : -1; }
@@ -98,17 +100,12 @@ class SightOfWalls {
   ProfileNumbers seen(const Walls& walls, int side) const;
   double tilted_by(int side) const { return side == 0 ? -toward_x_ : toward_x_; }
 
-  /// What the simulation is off by at a place, as a sum of its numbers: those at near places, and
-  /// those at far ones.
-  struct Bump {
-    std::array<int, 4> numbers;
-    std::array<double, 4> weights;
-  };
-  Bump bump_at(double u) const;
-  double bumps_at(double u) const;
-  double bump_deviation(int number) const;
   double signal(const ProfileLibrary::Value& v) const { return v.value + 0.5 * blur2_ * v.by_u2; }
-  double model(const ProfileLibrary::Value& v, double u) const;
+  /// What the simulation is off by at a place of a wall.
+  double off_by(double u, int side) const {
+    return simulation_->value(looks_[static_cast<std::size_t>(side)], u);
+  }
+  double model(const ProfileLibrary::Value& v, double u, int side) const;
   double variance_of(double level) const;
   /// All edges or one, away from their material.
   void move_outward(double by_nm, int edge = all_edges);
@@ -129,12 +126,12 @@ class SightOfWalls {
 
   const ProfileSight* sight_;
   const ProfileFitOptions* options_;
+  SimulationErrors* simulation_;
+  std::array<int, 2> looks_{};            // at walls with the ground at their left, at their right
   double toward_x_ = 0, shortening_ = 1;  // cosine of the azimuth; see `shortening`
   double gain_ = 1, offset_ = 0, blur2_ = 0, contrast_ = 1, tilt_off_deg_ = 0;
   std::array<double, 2> noise_{};  // variance at level 0, and per level
   double least_variance_ = 0;
-  std::vector<double> bumps_;  // at near places, then at far ones
-  int near_bumps_ = 0;
   std::vector<std::vector<double>> places_, raw_, errors_;  // of each edge, by row
 };
 

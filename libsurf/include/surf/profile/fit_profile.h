@@ -48,6 +48,9 @@ struct ProfileSight {
   double tilt_error_deg = 0;  ///< standard error of the tilt, which is fitted; 0: it is right
   /// Each edge is sought so far from its place by itself; 0: all together, some nanometres.
   double search_nm = 0;
+  /// Images of one signal at one energy have one number: their simulations are off by about the
+  /// same, the less they differ in tilt.
+  int signal = 0;
 };
 
 struct ProfileFitOptions {

@@ -41,18 +41,24 @@ class ProfileLibrary {
   };
 
   /// `signals`: per shape the signal at u = first + k step; `middle`: if it is not empty, the level
-  /// of all is its, and `signals` say how shapes differ. Throws InvalidInput for fewer shapes than
-  /// terms, signals of different lengths, or values that are not finite.
+  /// of all is its, and `signals` say how shapes differ. `blurred_by_nm`: signals are sums over
+  /// neighbouring places with independent errors, by a normal distribution of this deviation.
+  /// Throws InvalidInput for fewer shapes than terms, signals of different lengths, or values that
+  /// are not finite.
   ProfileLibrary(ProfileBox box, double first_u_nm, double step_nm,
                  const std::vector<ProfileNumbers>& shapes,
-                 const std::vector<std::vector<double>>& signals, const FinerMiddle& middle = {});
+                 const std::vector<std::vector<double>>& signals, const FinerMiddle& middle = {},
+                 double blurred_by_nm = 0);
 
   /// Beyond the range of u the signal goes on as at its end.
   Value at(double u_nm, const ProfileNumbers& numbers) const;
 
   /// Variances of the values at the simulated places, by the simulations' noise and what no
-  /// quadratic function fits; their errors are independent.
+  /// quadratic function fits, before they are blurred; those errors are independent.
   const std::vector<double>& variances() const { return variance_; }
+  /// What a place's value has of its neighbours' values before they are blurred: of itself, of the
+  /// next at each side, and so on.
+  const std::vector<double>& blur() const { return blur_; }
 
   const ProfileBox& box() const { return box_; }
   double first_u_nm() const { return first_; }
@@ -71,7 +77,8 @@ class ProfileLibrary {
   std::size_t count_ = 0, terms_ = 0;
   std::vector<std::size_t> free_;
   std::vector<double> coefficients_;  // of each u, its terms
-  std::vector<double> variance_;      // of the fitted value, at each u
+  std::vector<double> variance_;      // of the fitted value, at each u, before it is blurred
+  std::vector<double> blur_;
 };
 
 }  // namespace surf
