@@ -8,6 +8,7 @@
 #include "surf/mc/geometry/field_in_reach.h"
 #include "surf/mc/physics/medium.h"
 #include "surf/mc/simulate.h"
+#include "surf/profile/profile_library.h"
 #include "surf/reconstruction/view.h"
 #include "surf/workflow/signal_detectors.h"
 
@@ -17,31 +18,17 @@ namespace {
 // Beyond that electrons from the scanned part hardly come back.
 constexpr double heights_around = 4, least_around_nm = 200;
 
-}  // namespace
-
-double blurred_by_nm(const WallSimulation& how) {
-  return how.spot_nm >= how.step_nm ? how.spot_nm : 0;
-}
-
-namespace {
-
-constexpr double spots_aside = 4;  // where a spot ends
-
-/// What a spot makes of the signal of a beam without one; `aside` places more are known at each
-/// side.
-WallSignal blurred(const WallSignal& sharp, double spot_places, int aside) {
-  std::vector<double> weights;
-  double sum = 0;
-  for (int k = -aside; k <= aside; ++k) {
-    weights.push_back(std::exp(-0.5 * std::pow(k / spot_places, 2)));
-    sum += weights.back();
-  }
+/// What a blur makes of a signal; at each side as many places are lost as it reaches.
+WallSignal blurred(const WallSignal& sharp, const std::vector<double>& weights) {
+  const int reach = static_cast<int>(weights.size()) - 1;
   WallSignal out;
-  for (std::size_t first = 0; first + weights.size() <= sharp.mean.size(); ++first) {
+  for (int u = reach; u + reach < static_cast<int>(sharp.mean.size()); ++u) {
     double mean = 0, variance = 0;
-    for (std::size_t k = 0; k < weights.size(); ++k) {
-      mean += weights[k] / sum * sharp.mean[first + k];
-      variance += std::pow(weights[k] / sum * sharp.standard_error[first + k], 2);
+    for (int k = -reach; k <= reach; ++k) {
+      const double weight = weights[static_cast<std::size_t>(std::abs(k))];
+      const auto at = static_cast<std::size_t>(u + k);
+      mean += weight * sharp.mean[at];
+      variance += std::pow(weight * sharp.standard_error[at], 2);
     }
     out.mean.push_back(mean);
     out.standard_error.push_back(std::sqrt(variance));
@@ -51,16 +38,21 @@ WallSignal blurred(const WallSignal& sharp, double spot_places, int aside) {
 
 }  // namespace
 
+double blurred_by_nm(const WallSimulation& how) {
+  return how.spot_nm >= how.step_nm ? how.spot_nm : 0;
+}
+
 WallSignal simulate_wall(const FeatureShape& shape, const WallSimulation& how,
                          mc::LibrarySource& libraries, const Watch& watch) {
   if (blurred_by_nm(how) > 0) {
     // The spot as a sum of neighbours leaves a quarter of the noise that drawing from it does.
-    const int aside = static_cast<int>(std::ceil(spots_aside * how.spot_nm / how.step_nm));
+    const std::vector<double> weights = blur_weights(how.spot_nm / how.step_nm);
+    const int reach = static_cast<int>(weights.size()) - 1;
     WallSimulation sharp = how;
     sharp.spot_nm = 0;
-    sharp.first_u_nm -= aside * how.step_nm;
-    sharp.places += 2 * aside;
-    return blurred(simulate_wall(shape, sharp, libraries, watch), how.spot_nm / how.step_nm, aside);
+    sharp.first_u_nm -= reach * how.step_nm;
+    sharp.places += 2 * reach;
+    return blurred(simulate_wall(shape, sharp, libraries, watch), weights);
   }
   mc::Beam beam;
   beam.energy_ev = how.energy_ev;

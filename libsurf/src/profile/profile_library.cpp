@@ -42,19 +42,6 @@ struct Cubic {
   }
 };
 
-/// Of a normal distribution: at its middle, at the next place, and so on.
-std::vector<double> weights_of(double deviation) {
-  constexpr double farthest = 4;
-  std::vector<double> out{1};
-  double sum = 1;
-  for (int k = 1; k <= farthest * deviation; ++k) {
-    out.push_back(std::exp(-0.5 * std::pow(k / deviation, 2)));
-    sum += 2 * out.back();
-  }
-  for (double& w : out) w /= sum;
-  return out;
-}
-
 /// A number's effect on the signal counts as far as it is more than chance around (Wiener): chance
 /// in each place would look like something that the image tells.
 void keep_what_shows(Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> effect,
@@ -72,6 +59,18 @@ void keep_what_shows(Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> eff
 }
 
 }  // namespace
+
+std::vector<double> blur_weights(double deviation) {
+  constexpr double farthest = 4;
+  std::vector<double> out{1};
+  double sum = 1;
+  for (int k = 1; k <= std::ceil(farthest * deviation); ++k) {
+    out.push_back(std::exp(-0.5 * std::pow(k / deviation, 2)));
+    sum += 2 * out.back();
+  }
+  for (double& w : out) w /= sum;
+  return out;
+}
 
 std::vector<ProfileNumbers> profile_design(const ProfileBox& box, double per_term) {
   constexpr std::array<int, profile_numbers> bases{2, 3, 5, 7, 11};
@@ -93,7 +92,7 @@ ProfileLibrary::ProfileLibrary(ProfileBox box, double first_u_nm, double step_nm
                                const std::vector<std::vector<double>>& signals,
                                const FinerMiddle& middle, double blurred_by_nm)
     : box_(box), first_(first_u_nm), step_(step_nm), free_(free_numbers(box)),
-      blur_(weights_of(blurred_by_nm / step_nm)) {
+      blur_(blur_weights(blurred_by_nm / step_nm)) {
   terms_ = terms_of(free_.size());
   if (shapes.size() != signals.size() || shapes.size() < terms_)
     throw InvalidInput("profiles", "there are fewer shapes than terms", "Simulate more");

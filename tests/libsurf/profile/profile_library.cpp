@@ -101,6 +101,41 @@ TEST(ProfileLibrary, NoiseOfSignalsIsNoEffectOfTheShape) {
   EXPECT_NEAR(lib.at(0, box.middle).by_number[profile_angle], 0.1, 0.03);
 }
 
+TEST(ProfileLibrary, ErrorsOfBlurredSignalsAreThoseBeforeTheBlur) {
+  const auto shapes = profile_design(box);
+  const std::vector<double> weights = blur_weights(1.5);
+  double sum = weights[0];
+  for (std::size_t k = 1; k < weights.size(); ++k) sum += 2 * weights[k];
+  EXPECT_NEAR(sum, 1, 1e-12);
+  EXPECT_EQ(blur_weights(0), std::vector<double>{1});
+  constexpr double noise = 0.1;
+  constexpr int places = 400;
+  NormalNumbers normal(3, 1);
+  std::vector<std::vector<double>> sharp, blurred;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const int reach = static_cast<int>(weights.size()) - 1;
+    std::vector<double> wide;
+    for (int u = -reach; u < places + reach; ++u) wide.push_back(1 + noise * normal());
+    sharp.emplace_back(wide.begin() + reach, wide.end() - reach);
+    blurred.emplace_back();
+    for (int u = 0; u < places; ++u) {
+      double value = 0;
+      for (int k = -reach; k <= reach; ++k)
+        value += weights[static_cast<std::size_t>(std::abs(k))] *
+                 wide[static_cast<std::size_t>(u + reach + k)];
+      blurred.back().push_back(value);
+    }
+  }
+  const auto mean_variance = [](const ProfileLibrary& l) {
+    double mean = 0;
+    for (const double v : l.variances()) mean += v / places;
+    return mean;
+  };
+  const double before = mean_variance({box, 0, 1, shapes, sharp}),
+               after = mean_variance({box, 0, 1, shapes, blurred, {}, 1.5});
+  EXPECT_NEAR(after / before, 1, 0.1);
+}
+
 TEST(ProfileLibrary, GoesOnLevelBeyondItsEnds) {
   const ProfileLibrary lib = library();
   EXPECT_NEAR(lib.at(500, box.middle).value, quadratic(20, box.middle), 1e-9);

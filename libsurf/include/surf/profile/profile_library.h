@@ -28,6 +28,10 @@ struct FinerMiddle {
   std::vector<double> signal, variance;
 };
 
+/// How a blur of this normal deviation, in places, sums values: weights of a place itself, of the
+/// next at each side, and so on; with both sides they sum to 1. 0: no blur.
+std::vector<double> blur_weights(double deviation);
+
 /// The signal across a wall, u nm from the middle of its flank, material at positive u, by a
 /// quadratic function of the shape's numbers at each u, which is fitted to simulated signals.
 class ProfileLibrary {
