@@ -388,13 +388,13 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
   const double doubt_nm = height_doubt_nm(evidence_of(job, views));
   for (auto* wall : {&s.fit.left, &s.fit.right})
     *wall = doubted_height(*wall, {job.height_nm, job.height_error_nm}, doubt_nm);
+  std::vector<double> errors;
+  for (const FittedEdge& e : s.fit.edges()) errors.push_back(e.place_nm.standard_error);
+  s.measured_pitch_nm = pitch_of(sights.front().data.edges, errors);
   add_surface(image, s);
   if (job.along_x && job.kind != FeatureKind::hole) turn_surface(s);
   // The wall at the left of a gap has its ground at the right.
   if (job.kind == FeatureKind::trench) std::swap(s.fit.left, s.fit.right);
-  std::vector<double> errors;
-  for (const FittedEdge& e : s.fit.edges()) errors.push_back(e.place_nm.standard_error);
-  s.measured_pitch_nm = pitch_of(sights.front().data.edges, errors);
   s.reasons = reasons_of(job, s);
   if (!job.folder.empty()) s.written = write_profile(job, s);
   return s;

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <numbers>
 #include <utility>
 
+#include "profile_edges.h"
 #include "surf/afm/step_height.h"
 #include "surf/core/error.h"
 
@@ -84,37 +84,11 @@ double place_error(const FittedEdge& e, std::size_t row) {
   return std::hypot(e.place_nm.standard_error, std::isfinite(own) ? own : 0);
 }
 
-/// Edges of walls that belong to no whole feature: as far from their rims as those of the others
-/// are, straight.
-std::vector<FittedEdge> cut_off_edges(const std::vector<WallRim>& cut_off,
-                                      const std::vector<FittedEdge>& fitted, double pixel_nm) {
-  constexpr double least_error_px = 0.1;
-  std::vector<FittedEdge> out;
-  for (const WallRim& rim : cut_off) {
-    const auto sign = [](bool material_right) { return material_right ? 1.0 : -1.0; };
-    const bool has_like = std::ranges::any_of(
-        fitted, [&](const FittedEdge& e) { return e.edge.material_right == rim.material_right; });
-    double n = 0, mean = 0, squares = 0, rough = 0, error = 0;
-    for (const FittedEdge& f : fitted) {
-      if (has_like && f.edge.material_right != rim.material_right) continue;
-      const double inward = sign(f.edge.material_right) * (f.edge.rim_nm - f.place_nm.value);
-      ++n, mean += inward, squares += inward * inward, error += f.place_nm.standard_error;
-      for (const double x : f.smooth_nm)
-        rough += std::pow(x - f.place_nm.value, 2) / static_cast<double>(f.smooth_nm.size());
-    }
-    mean /= n, error /= n;
-    const double scatter = n > 1 ? std::max(0.0, squares / n - mean * mean) * n / (n - 1) : 0,
-                 floor = least_error_px * pixel_nm;
-    FittedEdge edge;
-    edge.edge.material_right = rim.material_right;
-    edge.place_nm = {rim.place_nm - sign(rim.material_right) * mean,
-                     std::sqrt(scatter + floor * floor + error * error)};
-    const std::size_t rows = fitted.front().smooth_nm.size();
-    edge.smooth_nm = edge.rows_nm = std::vector<double>(rows, edge.place_nm.value);
-    edge.errors_nm = std::vector<double>(rows, std::sqrt(rough / n));
-    out.push_back(std::move(edge));
-  }
-  return out;
+/// By fitted features, or by rims, or as told; 0 where features do not repeat.
+Measured pitch_of_surface(const PlacedImage& image, const ProfileSummary& s) {
+  constexpr double by_rims_px = 0.25;
+  if (s.pitch_nm == 0) return {};
+  return s.measured_pitch_nm.value_or(Measured{s.pitch_nm, by_rims_px * image.pitch_x_nm});
 }
 
 /// The edge that lies nearest to a pixel.
@@ -173,9 +147,8 @@ Grid<double> turned(const Grid<double>& grid) {
 
 void add_surface(const PlacedImage& image, ProfileSummary& s) {
   add_lines(image, s);
-  std::vector<FittedEdge> edges = s.fit.edges();
-  std::ranges::move(cut_off_edges(s.threshold.cut_off, edges, image.pitch_x_nm),
-                    std::back_inserter(edges));
+  const std::vector<FittedEdge> edges =
+      edges_in_sight(image, s.threshold.cut_off, s.fit.edges(), pitch_of_surface(image, s));
   const std::array<WallDoubt, 2> walls{WallDoubt(s.fit.left), WallDoubt(s.fit.right)};
   const int w = image.values.width(), h = image.values.height();
   s.surface = {image.placement(), Grid<double>(w, h)};
