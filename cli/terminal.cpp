@@ -49,7 +49,7 @@ void on_interrupt(int) {
   token->cancel();
   static const char text[] =
       "\nsemsurf: interrupted; writing what is done (Ctrl-C again to stop at once)\n";
-  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, sizeof text - 1);
+  [[maybe_unused]] const auto sent = ::write(STDERR_FILENO, text, sizeof text - 1);
 }
 
 void handle_interrupts(void (*handler)(int)) {

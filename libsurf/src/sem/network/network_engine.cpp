@@ -238,9 +238,9 @@ Grid<double> NetworkEngine<T>::gradient(const Grid<double>& z_nm,
     transposed.add(
         tile,
         [&](int, int scale, const Block& block, std::size_t i, T* out) {
-          const std::size_t size =
+          const std::size_t count =
               static_cast<std::size_t>(block.rows) * facet::coefficients * pass_.columns();
-          std::copy_n(given[i].coefficients + scale * size, size, out);
+          std::copy_n(given[i].coefficients + scale * count, count, out);
         },
         unit, gradient);
   }
