@@ -149,23 +149,30 @@ HeightField scan_of(const Case& c) {
   return scan;
 }
 
-/// Root mean square difference, the median taken off, and the share within two deviations.
+/// Root mean square difference, the median taken off, and the share within two deviations, heights
+/// counted from the ground.
 struct Off {
   double rms_nm = 0, within = 0;
 };
 Off off(const HeightField& found, const Grid<double>& deviation_nm, const HeightField& truth) {
-  std::vector<double> d;
-  for (std::size_t i = 0; i < truth.z_nm.size(); ++i)
+  constexpr double of_ground_nm = 1;
+  const double lowest = std::ranges::min(truth.z_nm.data());
+  std::vector<double> d, of_ground;
+  for (std::size_t i = 0; i < truth.z_nm.size(); ++i) {
     d.push_back(found.z_nm.data()[i] - truth.z_nm.data()[i]);
-  std::vector<double> sorted = d;
-  std::ranges::sort(sorted);
-  const double median = sorted[sorted.size() / 2];
+    if (truth.z_nm.data()[i] < lowest + of_ground_nm) of_ground.push_back(d.back());
+  }
+  const auto median_of = [](std::vector<double> values) {
+    std::ranges::sort(values);
+    return values[values.size() / 2];
+  };
+  const double median = median_of(d), ground = median_of(of_ground);
   Off out;
   for (std::size_t i = 0; i < d.size(); ++i) {
     out.rms_nm += std::pow(d[i] - median, 2) / static_cast<double>(d.size());
     if (!deviation_nm.empty())
       out.within +=
-          (std::abs(d[i] - median) <= 2 * deviation_nm.data()[i]) / static_cast<double>(d.size());
+          (std::abs(d[i] - ground) <= 2 * deviation_nm.data()[i]) / static_cast<double>(d.size());
   }
   out.rms_nm = std::sqrt(out.rms_nm);
   return out;

@@ -76,8 +76,9 @@ void describe(ParameterVisitor& visit, ProfileJob& job) {
          .help = "Rounds of simulated profiles, each nearer to the fit than the one before",
          .limits = within(1, 5)});
   visit(job.model_error, {.name = "profile.model_error",
-                          .help = "Expected error of simulated profiles, as a share of their "
-                                  "contrast, because of other physics or another detector",
+                          .help = "Largest error to expect of simulated profiles, as a share of "
+                                  "their contrast, because of other physics or another detector; "
+                                  "the images show how much of it there is",
                           .unit = Unit::share,
                           .limits = within(0, 1)});
   visit(job.seed, {.name = "profile.seed", .help = "Seed of the simulations"});

@@ -72,8 +72,7 @@ void SimulationErrors::move(const Eigen::VectorXd& step, int first) {
     values_[k] += step(first + static_cast<Eigen::Index>(k));
 }
 
-void SimulationErrors::add_prior(int first, double& minus_log, Eigen::VectorXd& pull,
-                                 Eigen::MatrixXd& matrix) const {
+Eigen::MatrixXd SimulationErrors::covariance() const {
   const auto looks = static_cast<Eigen::Index>(looks_.size());
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(looks, looks);
   for (Eigen::Index i = 0; i < looks; ++i)
@@ -82,9 +81,19 @@ void SimulationErrors::add_prior(int first, double& minus_log, Eigen::VectorXd& 
       if (looks_[a].signal != looks_[b].signal) continue;
       const double apart = angle_between(looks_[a], looks_[b]) / alike_deg;
       covariance(i, j) = (i == j ? 1 : in_common * std::exp(-0.5 * apart * apart)) *
-                         deviations_[a] * deviations_[b];
+                         deviations_[a] * deviations_[b] * share_ * share_;
     }
-  const Eigen::MatrixXd precision = covariance.inverse();
+  return covariance;
+}
+
+double SimulationErrors::log_prior_determinant() const {
+  return -places() * covariance().ldlt().vectorD().array().log().sum();
+}
+
+void SimulationErrors::add_prior(int first, double& minus_log, Eigen::VectorXd& pull,
+                                 Eigen::MatrixXd& matrix) const {
+  const auto looks = static_cast<Eigen::Index>(looks_.size());
+  const Eigen::MatrixXd precision = covariance().inverse();
   const auto index = [&](Eigen::Index look, int place) {
     return static_cast<std::size_t>(look) * static_cast<std::size_t>(places()) +
            static_cast<std::size_t>(place);

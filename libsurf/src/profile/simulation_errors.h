@@ -27,6 +27,8 @@ class SimulationErrors {
   int look(const WallLook& look);
   /// The standard deviation of the near and of the far part.
   void set_deviation(int look, double deviation);
+  /// What all of them are multiplied by, > 0; at first 1.
+  void set_share(double share) { share_ = share; }
 
   int numbers() const { return static_cast<int>(values_.size()); }
   int near_places() const { return near_; }
@@ -45,12 +47,17 @@ class SimulationErrors {
   /// the logarithm, minus its gradient, and its second derivatives.
   void add_prior(int first, double& minus_log, Eigen::VectorXd& pull,
                  Eigen::MatrixXd& matrix) const;
+  /// The logarithm of the determinant of the prior's second derivatives.
+  double log_prior_determinant() const;
 
  private:
   int places() const { return near_ + far_; }
+  /// Of all looks at one place.
+  Eigen::MatrixXd covariance() const;
 
   double first_nm_, near_nm_, far_nm_;
   int near_, far_;
+  double share_ = 1;
   std::vector<WallLook> looks_;
   std::vector<double> deviations_;
   std::vector<double> values_;  // of each look: at near places, then at far ones

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -40,8 +41,28 @@ struct Made {
   double width_nm = 0;  // the mean of its rows
 };
 
+/// What other physics might make of the signal, u nm from a wall: a function of chance over 4 nm,
+/// and one over 40 nm.
+class OtherPhysics {
+ public:
+  OtherPhysics(double deviation, std::uint64_t seed) {
+    NormalNumbers normal(seed, 21);
+    for (double& v : near_) v = deviation * normal();
+    for (double& v : far_) v = deviation * normal();
+  }
+  double operator()(double u) const { return between(near_, u / 4) + between(far_, u / 40); }
+
+ private:
+  static double between(const std::array<double, 24>& values, double place) {
+    const double shifted = place + 12, before = std::floor(shifted), share = shifted - before;
+    const auto k = static_cast<std::size_t>(before);
+    return (1 - share) * values[k] + share * values[k + 1];
+  }
+  std::array<double, 24> near_{}, far_{};
+};
+
 /// Two lines with rough edges.
-Made lines(std::uint64_t seed, double sigma, double noise) {
+Made lines(std::uint64_t seed, double sigma, double noise, const OtherPhysics& other = {0, 1}) {
   constexpr int columns = 90, rows = 96;
   constexpr double pixel = 4;
   Made made;
@@ -59,7 +80,8 @@ Made lines(std::uint64_t seed, double sigma, double noise) {
       const double at = x * pixel;
       const int e = at < 91 ? 0 : at < 176 ? 1 : at < 261 ? 2 : 3;
       const double u = (e % 2 == 0 ? 1 : -1) * (at - edges[e]);
-      const double level = 100 * signal(std::clamp(u, -35.0, 35.0), truth) + 20;
+      const double near = std::clamp(u, -35.0, 35.0),
+                   level = 100 * (signal(near, truth) + other(near)) + 20;
       made.image.values(x, y) = level + noise * std::sqrt(level / 100) * normal();
     }
   }
@@ -189,6 +211,43 @@ TEST(FitProfile, AWrongModelIsToldByWhatItIsOffBy) {
       made.image.values(x, y) += 40 * std::exp(-0.5 * near * near / 9);
     }
   EXPECT_GT(fit(made.image, o).sights.front().discrepancy_share, 5 * right + 0.01);
+}
+
+// That the simulation is right shows: then it hardly matters how far off it might have been.
+TEST(FitProfile, HowFarTheSimulationIsOffIsMeasured) {
+  const auto errors = [](const PlacedImage& image, double model_error) {
+    ProfileFitOptions o = usual();
+    o.model_error = model_error;
+    const ProfileFit f = fit(image, o);
+    return std::array{f.left[profile_width].standard_error, f.left[profile_angle].standard_error};
+  };
+  const PlacedImage same = lines(2, 1.2, 4).image,
+                    other = lines(2, 1.2, 4, OtherPhysics(0.1, 3)).image;
+  const auto right = errors(same, 0.01), might_be_off = errors(same, 0.08),
+             off = errors(other, 0.08);
+  for (std::size_t k = 0; k < right.size(); ++k) {
+    EXPECT_LT(might_be_off[k], 1.3 * right[k]);
+    EXPECT_GT(off[k], 1.2 * might_be_off[k]);
+  }
+}
+
+TEST(FitProfile, IntervalsHoldWhereTheSimulationIsOff) {
+  constexpr int trials = 12;
+  double width2 = 0, angle2 = 0;
+  for (std::uint64_t seed = 1; seed <= trials; ++seed) {
+    // 4 % of the contrast.
+    const Made made = lines(seed, 1.2, 4, OtherPhysics(0.05, 40 + seed));
+    ProfileFitOptions o = usual();
+    o.model_error = 0.08;
+    const ProfileFit f = fit(made.image, o);
+    const Measured width = f.left[profile_width], angle = f.left[profile_angle];
+    width2 += std::pow((width.value - made.width_nm) / width.standard_error, 2) / trials;
+    angle2 += std::pow((angle.value - truth[profile_angle]) / angle.standard_error, 2) / trials;
+  }
+  // Of chi-squared of 12, 0.1 % lie above 2.74 each.
+
+  EXPECT_LT(width2, 2.74);
+  EXPECT_LT(angle2, 2.74);
 }
 
 /// A bright flank, as wide as the beam sees it, which grows with the height and with the angle

@@ -63,6 +63,18 @@ TEST(SimulationErrors, ThePriorsGradientIsItsDerivative) {
   }
 }
 
+TEST(SimulationErrors, AShareNarrowsThePriorAndItsDeterminantIsKnown) {
+  SimulationErrors errors(-10, 10, 5);
+  const int first = errors.look({0, 0, 0}), second = errors.look({0, 4, 0});
+  errors.set_deviation(first, 0.2), errors.set_deviation(second, 0.3);
+  const Eigen::MatrixXd whole = normal_of(errors).matrix;
+  EXPECT_NEAR(errors.log_prior_determinant(), std::log(whole.determinant()), 1e-9);
+  errors.set_share(0.25);
+  const Eigen::MatrixXd narrow = normal_of(errors).matrix;
+  EXPECT_NEAR((narrow - 16 * whole).norm(), 0, 1e-9 * narrow.norm());
+  EXPECT_NEAR(errors.log_prior_determinant(), std::log(narrow.determinant()), 1e-9);
+}
+
 TEST(SimulationErrors, AreStraightBetweenTheirPlaces) {
   SimulationErrors errors(0, 40, 4);
   const int first = errors.look({0, 0, 0}), second = errors.look({0, 30, 0});
