@@ -78,7 +78,7 @@ void describe(ParameterVisitor& visit, ProfileJob& job) {
   visit(job.model_error, {.name = "profile.model_error",
                           .help = "Largest error to expect of simulated profiles, as a share of "
                                   "their contrast, because of other physics or another detector; "
-                                  "the images show how much of it there is",
+                                  "where the height is known, images show how much there is",
                           .unit = Unit::share,
                           .limits = within(0, 1)});
   visit(job.seed, {.name = "profile.seed", .help = "Seed of the simulations"});

@@ -20,7 +20,8 @@ constexpr double hardly_told =
     0.1;  // heights and radii, known to nanometres, settle ten times as coarsely
 // Of the model's error, which may show. Tiers of physics differ by 1.3 to 2.7 % of the contrast.
 constexpr std::array shares{1.0, 0.5, 0.25};
-constexpr double beyond_box = 1.2;  // of the box's half sizes: further away no quadratic holds
+constexpr double known_height = 0.05;  // its standard error, over it
+constexpr double beyond_box = 1.2;     // of the box's half sizes: further away no quadratic holds
 
 class Fit {
  public:
@@ -50,7 +51,7 @@ class Fit {
 
   ProfileFit run() {
     bool converged = false;
-    errors_.set_share(shares.back());
+    if (height_known()) errors_.set_share(shares.back());
     for (int round = 0; round < most_rounds && !converged; ++round) {
       options_.watch.report(round, most_rounds);
       const std::vector<double> before = places();
@@ -64,7 +65,7 @@ class Fit {
         sight.follow();
         sight.estimate_noise(walls_);
       }
-      weigh_errors();
+      if (height_known()) weigh_errors();
       double moved = 0;
       const std::vector<double> now = places();
       for (std::size_t e = 0; e < now.size(); ++e)
@@ -179,6 +180,13 @@ class Fit {
     return false;
   }
 
+  /// Where heights are found, what the simulation is off by at flanks looks like another height:
+  /// all that it may be off by counts.
+  bool height_known() const {
+    return options_.prior_deviation[profile_height] <=
+           known_height * options_.prior_mean[profile_height];
+  }
+
   /// How much of what the simulation may be off by shows, by its marginal likelihood (an empirical
   /// prior: MacKay 1992, doi:10.1162/neco.1992.4.3.415), with the data's equations taken at this
   /// point. Root mean square over what it may be, so that few data leave it large.
@@ -202,7 +210,7 @@ class Fit {
       const double weight = std::exp(evidence[i] - most);
       sum += weight, squares += weight * shares[i] * shares[i];
     }
-    errors_.set_share(std::sqrt(squares / sum));
+    if (const double mean = squares / sum; std::isfinite(mean)) errors_.set_share(std::sqrt(mean));
   }
 
   /// With what the libraries' own errors move the fit by.

@@ -334,6 +334,21 @@ TEST(FitProfile, ATiltedImageTellsTheHeightAndItsTiltIsFitted) {
   EXPECT_EQ(one.sights[0].tilt_deg.standard_error, 0);
 }
 
+// What the simulation is off by at flanks would be taken for another height, and not show.
+TEST(FitProfile, WhereHeightsAreFoundTheWholeErrorOfTheSimulationCounts) {
+  TiltedScene scene;
+  scene.options.model_error = 0.02;
+  const auto error = [&] {
+    return fit_profile({scene.above(), scene.aside(2)}, scene.options)
+        .left[profile_width]
+        .standard_error;
+  };
+  const double found = error();
+  scene.options.prior_mean[profile_height] = 100;
+  scene.options.prior_deviation[profile_height] = 4.9;  // known
+  EXPECT_GT(found, 1.4 * error());
+}
+
 // Two images that look alike are no two measurements of what the simulation is off by.
 TEST(FitProfile, TheSimulationIsOffByTheSameInImagesThatLookAlike) {
   TiltedScene scene;
@@ -360,6 +375,22 @@ TEST(FitProfile, TheSimulationMayBeOffAtOneSideOfATiltedImage) {
       if (std::abs(side.u_nm[i] + 18) < 8)
         EXPECT_NEAR(side.measured[i], side.fitted[i], 5) << side.material_right << side.u_nm[i];
   EXPECT_NEAR(f.left[profile_height].value, 100, 3 * f.left[profile_height].standard_error);
+}
+
+TEST(FitProfile, ANumberWithoutEffectDoesNotSpoilTheOthers) {
+  const auto shapes = profile_design(box);
+  std::vector<std::vector<double>> signals;
+  for (ProfileNumbers n : shapes) {
+    n[profile_angle] = truth[profile_angle];
+    signals.emplace_back();
+    for (int k = 0; k <= 140; ++k) signals.back().push_back(signal(-35 + 0.5 * k, n));
+  }
+  const Made made = lines(7, 1.2, 12);
+  const ProfileFit f =
+      fit_profile(profile_data(made.image, find_edges(made.image, FeatureKind::line).edges),
+                  {box, -35, 0.5, shapes, signals}, usual());
+  EXPECT_TRUE(std::isfinite(f.left[profile_angle].value));
+  EXPECT_NEAR(f.left[profile_width].value, made.width_nm, 1);
 }
 
 TEST(FitProfile, RefusesAnEdgeWithoutPixels) {

@@ -59,7 +59,8 @@ struct ProfileFitOptions {
   /// width follows from the edges' places.
   ProfileNumbers prior_mean{}, prior_deviation{};
   /// What the simulation may be off by: a share of the signal's contrast, correlated over some nm,
-  /// as much again over ten times as many. How much of it there is, a quarter or more, is measured.
+  /// as much again over ten times as many. How much of it there is, a quarter or more, is measured
+  /// where the height is known to 5 %.
   double model_error = 0.08, model_error_nm = 4;
   Watch watch;
 };
