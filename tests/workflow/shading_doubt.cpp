@@ -33,6 +33,10 @@ TEST(ShadingDoubt, LeavesWhatTheDataDidNotTell) {
   EXPECT_EQ(prior_alone.value, 30);
   EXPECT_EQ(prior_alone.standard_error, 20);
   EXPECT_LT(doubted({30, 0.5}, {30, 0.51}, 10).standard_error, 0.51);
+  // A fit that was pulled away from what a scan told, and is no surer for it.
+  const Measured pulled = doubted({98.3, 0.53}, {100, 0.5}, 5);
+  EXPECT_EQ(pulled.value, 100);
+  EXPECT_EQ(pulled.standard_error, 0.5);
 }
 
 TEST(ShadingDoubt, ImagesTellHeightsInTheirOwnWays) {

@@ -27,7 +27,8 @@ struct NumberPrior {
 };
 
 /// What a number is by its prior and data, if the data are uncertain by `doubt` beside what the fit
-/// knew of that gave `fitted` from both.
+/// knew of that gave `fitted` from both. Data that leave a number no surer than its prior tell
+/// nothing of it.
 Measured doubted(const Measured& fitted, const NumberPrior& prior, double doubt);
 
 /// A wall's numbers, if what images tell of the height is uncertain by `doubt_nm`. They tell well
