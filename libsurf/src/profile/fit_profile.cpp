@@ -131,11 +131,17 @@ class Fit {
   }
 
   /// The negative logarithm of the posterior, and its Gauss-Newton equations.
-  ProfileNormal normal(bool of_errors = false, bool with_errors = true) const {
+  ProfileNormal normal(bool of_errors = false) const {
+    ProfileNormal out = before_prior_of_errors(of_errors);
+    errors_.add_prior(layout_.errors(), out.value, out.pull, out.matrix);
+    return out;
+  }
+
+  /// The same without what is known beforehand of the simulation's errors.
+  ProfileNormal before_prior_of_errors(bool of_errors = false) const {
     ProfileNormal out{Eigen::MatrixXd::Zero(all_, all_), Eigen::VectorXd::Zero(all_), 0};
     for (std::size_t k = 0; k < sights_.size(); ++k)
       sights_[k].add_to(layout_, first_[k], walls_, of_errors, out);
-    if (with_errors) errors_.add_prior(layout_.errors(), out.value, out.pull, out.matrix);
     for (int side = 0; side < layout_.walls; ++side)
       for (std::size_t k = 0; k < layout_.free.size(); ++k) {
         const std::size_t number = layout_.free[k];
@@ -192,7 +198,7 @@ class Fit {
   /// point. Root mean square over what it may be, so that few data leave it large.
   void weigh_errors() {
     constexpr double least = std::numeric_limits<double>::min();  // what the data do not tell
-    const ProfileNormal data = normal(false, false);
+    const ProfileNormal data = before_prior_of_errors();
     SimulationErrors errors = errors_;
     std::array<double, shares.size()> evidence{};
     for (std::size_t i = 0; i < shares.size(); ++i) {

@@ -244,8 +244,7 @@ TEST(FitProfile, IntervalsHoldWhereTheSimulationIsOff) {
     width2 += std::pow((width.value - made.width_nm) / width.standard_error, 2) / trials;
     angle2 += std::pow((angle.value - truth[profile_angle]) / angle.standard_error, 2) / trials;
   }
-  // Of chi-squared of 12, 0.1 % lie above 2.74 each.
-
+  // Of chi-squared with 12 degrees of freedom, over 12, 0.1 % lie above 2.74.
   EXPECT_LT(width2, 2.74);
   EXPECT_LT(angle2, 2.74);
 }
