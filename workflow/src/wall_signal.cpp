@@ -17,6 +17,10 @@ namespace {
 
 // Beyond that electrons from the scanned part hardly come back.
 constexpr double heights_around = 4, least_around_nm = 200;
+// Deviation of electrons about a place where the spot is wider, over the places' distance: at
+// points, a signal that jumps, as at the edge of a wall that the beam does not see, would do so in
+// whole steps.
+constexpr double about_place = 0.5;
 
 /// What a blur makes of a signal; at each side as many places are lost as it reaches.
 WallSignal blurred(const WallSignal& sharp, const std::vector<double>& weights) {
@@ -39,17 +43,19 @@ WallSignal blurred(const WallSignal& sharp, const std::vector<double>& weights) 
 }  // namespace
 
 double blurred_by_nm(const WallSimulation& how) {
-  return how.spot_nm >= how.step_nm ? how.spot_nm : 0;
+  if (how.spot_nm < how.step_nm) return 0;
+  const double drawn = about_place * how.step_nm;
+  return std::sqrt(how.spot_nm * how.spot_nm - drawn * drawn);
 }
 
 WallSignal simulate_wall(const FeatureShape& shape, const WallSimulation& how,
                          mc::LibrarySource& libraries, const Watch& watch) {
-  if (blurred_by_nm(how) > 0) {
+  if (const double blur_nm = blurred_by_nm(how); blur_nm > 0) {
     // The spot as a sum of neighbours leaves a quarter of the noise that drawing from it does.
-    const std::vector<double> weights = blur_weights(how.spot_nm / how.step_nm);
+    const std::vector<double> weights = blur_weights(blur_nm / how.step_nm);
     const int reach = static_cast<int>(weights.size()) - 1;
     WallSimulation sharp = how;
-    sharp.spot_nm = 0;
+    sharp.spot_nm = about_place * how.step_nm;
     sharp.first_u_nm -= reach * how.step_nm;
     sharp.places += 2 * reach;
     return blurred(simulate_wall(shape, sharp, libraries, watch), weights);
