@@ -83,17 +83,21 @@ WallSimulation simulation_of(const ProfileJob& job, const ProfileView& view, con
   for (const ProfileNumbers& n : profile_design(box))
     wall = std::max(wall, 0.5 * n[profile_height] / std::tan(n[profile_angle] * degree) +
                               0.5 * n[profile_height] * aside);
-  const double felt = wall + std::min(most_beside_nm, 30 + job.height_nm + reach + 4 * job.spot_nm);
+  // Ground is shaded by walls, top is not.
+  const double felt = 30 + reach + 4 * job.spot_nm;
+  double top = wall + std::min(most_beside_nm, felt),
+         ground = wall + std::min(most_beside_nm, job.height_nm + felt);
   const double smallest = box.middle[profile_width] - box.half[profile_width],
                widest = box.middle[profile_width] + box.half[profile_width];
-  double inner = std::min(felt, 0.5 * smallest),
-         outer = pitch_nm > 0 ? std::min(felt, 0.5 * (pitch_nm - widest)) : felt;
-  if (job.kind == FeatureKind::edge) inner = outer = felt;
   const bool line = job.kind == FeatureKind::line;
-  how.first_u_nm = line ? -outer : -inner;
-  const double last = line ? inner : outer;
+  if (job.kind != FeatureKind::edge) {
+    double &inside = line ? top : ground, &outside = line ? ground : top;
+    inside = std::min(inside, 0.5 * smallest);
+    if (pitch_nm > 0) outside = std::min(outside, 0.5 * (pitch_nm - widest));
+  }
+  how.first_u_nm = -ground;
   how.step_nm = std::clamp(0.4 * view.pixel_nm, 0.5, 2.0) * (coarse ? 2 : 1);
-  how.places = std::max(8, static_cast<int>((last - how.first_u_nm) / how.step_nm) + 1);
+  how.places = std::max(8, static_cast<int>((top - how.first_u_nm) / how.step_nm) + 1);
   how.electrons = job.electrons;
   return how;
 }
