@@ -8,8 +8,10 @@ namespace surf {
 namespace {
 
 // Physics and detectors also differ in how bright ground and top are, over tens of nanometres.
-constexpr double farther = 10;      // of the near places' distance
-constexpr double alike_deg = 6;     // looks that differ by this are correlated by exp(-1/2)
+constexpr double farther = 10;  // of the near places' distance
+// Looks that differ by this are correlated by exp(-1/2). How bright ground and top are is off alike
+// from wherever they are seen; at a flank it is not.
+constexpr double near_alike_deg = 6, far_alike_deg = 60;
 constexpr double in_common = 0.99;  // the most that any two looks are correlated by
 constexpr double same_deg = 1e-9;
 
@@ -72,7 +74,7 @@ void SimulationErrors::move(const Eigen::VectorXd& step, int first) {
     values_[k] += step(first + static_cast<Eigen::Index>(k));
 }
 
-Eigen::MatrixXd SimulationErrors::covariance() const {
+Eigen::MatrixXd SimulationErrors::covariance(double alike_deg) const {
   const auto looks = static_cast<Eigen::Index>(looks_.size());
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(looks, looks);
   for (Eigen::Index i = 0; i < looks; ++i)
@@ -87,18 +89,24 @@ Eigen::MatrixXd SimulationErrors::covariance() const {
 }
 
 double SimulationErrors::log_prior_determinant() const {
-  return -places() * covariance().ldlt().vectorD().array().log().sum();
+  const auto of_a_place = [](const Eigen::MatrixXd& covariance) {
+    return -covariance.ldlt().vectorD().array().log().sum();
+  };
+  return near_ * of_a_place(covariance(near_alike_deg)) +
+         far_ * of_a_place(covariance(far_alike_deg));
 }
 
 void SimulationErrors::add_prior(int first, double& minus_log, Eigen::VectorXd& pull,
                                  Eigen::MatrixXd& matrix) const {
   const auto looks = static_cast<Eigen::Index>(looks_.size());
-  const Eigen::MatrixXd precision = covariance().inverse();
+  const Eigen::MatrixXd of_near = covariance(near_alike_deg).inverse(),
+                        of_far = covariance(far_alike_deg).inverse();
   const auto index = [&](Eigen::Index look, int place) {
     return static_cast<std::size_t>(look) * static_cast<std::size_t>(places()) +
            static_cast<std::size_t>(place);
   };
-  for (int place = 0; place < places(); ++place)
+  for (int place = 0; place < places(); ++place) {
+    const Eigen::MatrixXd& precision = place < near_ ? of_near : of_far;
     for (Eigen::Index i = 0; i < looks; ++i)
       for (Eigen::Index j = 0; j < looks; ++j) {
         const auto a = first + static_cast<Eigen::Index>(index(i, place)),
@@ -108,6 +116,7 @@ void SimulationErrors::add_prior(int first, double& minus_log, Eigen::VectorXd& 
         pull(a) -= precision(i, j) * other;
         matrix(a, b) += precision(i, j);
       }
+  }
 }
 
 }  // namespace surf

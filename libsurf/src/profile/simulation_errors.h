@@ -53,7 +53,7 @@ class SimulationErrors {
  private:
   int places() const { return near_ + far_; }
   /// Of all looks at one place.
-  Eigen::MatrixXd covariance() const;
+  Eigen::MatrixXd covariance(double alike_deg) const;
 
   double first_nm_, near_nm_, far_nm_;
   int near_, far_;

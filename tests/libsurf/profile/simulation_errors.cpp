@@ -45,6 +45,14 @@ TEST(SimulationErrors, LooksThatDifferByLittleAreOffByAboutTheSame) {
   EXPECT_NEAR(covariance(here, there), 0, 1e-9);
 }
 
+TEST(SimulationErrors, GroundAndTopAreOffAlikeFromWhereverTheyAreSeen) {
+  SimulationErrors errors(-30, 50, 4);
+  const int above = errors.look({0, 0, 0}), tilted = errors.look({0, 12, 0});
+  const Eigen::MatrixXd covariance = normal_of(errors).matrix.inverse();
+  const int i = errors.at(above, 2).numbers[2], j = errors.at(tilted, 2).numbers[2];
+  EXPECT_NEAR(covariance(i, j), 0.99 * std::exp(-0.02), 1e-6);
+}
+
 TEST(SimulationErrors, ThePriorsGradientIsItsDerivative) {
   SimulationErrors errors(-10, 10, 5);
   errors.look({0, 0, 0}), errors.look({0, 4, 0}), errors.look({1, 0, 2});
