@@ -43,7 +43,7 @@ TEST(ShadingDoubt, ImagesTellHeightsInTheirOwnWays) {
   const double from_above = height_doubt_nm({FeatureKind::line, 100, 0, true});
   EXPECT_EQ(from_above, 20);
   EXPECT_EQ(height_doubt_nm({FeatureKind::hole, 50}), 10);
-  EXPECT_NEAR(height_doubt_nm({FeatureKind::hole, 50, 12}), 4, 1e-9);
+  EXPECT_NEAR(height_doubt_nm({FeatureKind::hole, 50, 12}), 2, 1e-9);
   // A flank runs farther in the image the more the beam is tilted.
   const double little = height_doubt_nm({FeatureKind::line, 100, 3}),
                more = height_doubt_nm({FeatureKind::line, 100, 8});

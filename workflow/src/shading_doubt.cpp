@@ -11,7 +11,7 @@ namespace surf::workflow {
 namespace {
 
 constexpr double from_above = 0.2;        // of the height; chosen on 18 lines of bench_views
-constexpr double bottom_of_hole = 0.08;   // of the depth, at any tilt; 3 holes of bench_profile
+constexpr double bottom_of_hole = 0.04;   // of the depth, at any tilt; holes of bench_profile
 constexpr double end_of_flank_nm = 0.26;  // in the image; chosen on 3 lines of bench_views
 
 }  // namespace
