@@ -3,9 +3,9 @@
 // standard errors hold, on images whose truth is known:
 //   bench_profile [CASES [FIRST [FOLDER]]]   with a folder, results and pictures of each case go
 //                                            there
-//   bench_profile --depths [CASES [FIRST [FOLDER [TILT]]]]   holes whose depth is told a fifth
-//                                            wrong; with a tilt of so many degrees two further
-//                                            images, from either side
+//   bench_profile --depths [CASES [FIRST [FOLDER [TILT [IMAGES]]]]]   holes whose depth is told a
+//                                            fifth wrong; with a tilt of so many degrees 2 or
+//                                            IMAGES further images, from all sides
 // Cases 0 to 5 chose what the method is; the others judge it.
 // Lines, trenches and holes of drawn width, angle and corners, 100 nm high, pixels of 4 nm, 150
 // electrons per pixel; lines and trenches with rough edges. Images are made by the first tier of
@@ -203,6 +203,7 @@ int main(int argc, char** argv) {
   const int first = argc > 2 ? std::atoi(argv[2]) : depths ? 2 : 6;
   const std::filesystem::path folder = argc > 3 ? argv[3] : "";
   const double tilt_deg = argc > 4 ? std::atof(argv[4]) : 0;
+  const int tilted_images = argc > 5 ? std::atoi(argv[5]) : 2;
   double depth_squares = 0, depth_in = 0, depth_count = 0;
   workflow::CachedLibraries libraries(io::cache_folder(""));
   Pooled own, other;
@@ -224,7 +225,8 @@ int main(int argc, char** argv) {
     job.spot_nm = spot_nm;
     job.cache = io::cache_folder("");
     if (tilt_deg > 0) {
-      for (const double azimuth_deg : {0, 180}) {
+      for (int side = 0; side < tilted_images; ++side) {
+        const double azimuth_deg = 360.0 * side / tilted_images;
         workflow::SemInput view;
         view.image = image_of(c, libraries, tilt_deg, azimuth_deg);
         job.views.push_back(std::move(view));
