@@ -44,39 +44,14 @@ class Fit {
     const int before = layout_.errors() + errors_.numbers();
     for (int& first : first_) first += before;
     all_ += before;
+    layout_.width = all_;
     width_now();
     for (SightOfWalls& sight : sights_) sight.begin(walls_);
     width_now();
   }
 
   ProfileFit run() {
-    bool converged = false;
-    if (height_known()) errors_.set_share(shares.back());
-    for (int round = 0; round < most_rounds && !converged; ++round) {
-      options_.watch.report(round, most_rounds);
-      const std::vector<double> before = places();
-      const Walls walls_before = walls_;
-      for (int step = 0; step < steps_per_round; ++step) {
-        options_.watch.check();
-        if (!improve()) break;
-      }
-      for (SightOfWalls& sight : sights_) {
-        sight.place_rows(walls_);
-        sight.follow();
-        sight.estimate_noise(walls_);
-      }
-      if (height_known()) weigh_errors();
-      double moved = 0;
-      const std::vector<double> now = places();
-      for (std::size_t e = 0; e < now.size(); ++e)
-        moved = std::max(moved, std::abs(now[e] - before[e]));
-      for (std::size_t k = 0; k < profile_numbers; ++k)
-        for (std::size_t side = 0; side < 2; ++side)
-          if (box_.half[k] > 0)
-            moved = std::max(moved, (k == profile_width || k == profile_angle ? 1 : hardly_told) *
-                                        std::abs(walls_[side][k] - walls_before[side][k]));
-      converged = round > 1 && moved < settled_nm;
-    }
+    const bool converged = settle();
     for (int step = 0; step < steps_per_round; ++step) {
       options_.watch.check();
       improve();
@@ -130,6 +105,38 @@ class Fit {
     return k == profile_top || k == profile_foot ? std::max(value, 0.0) : value;
   }
 
+  /// Steps until nothing moves. False: it still did.
+  bool settle() {
+    if (height_known()) errors_.set_share(shares.back());
+    bool converged = false;
+    for (int round = 0; round < most_rounds && !converged; ++round) {
+      options_.watch.report(round, most_rounds);
+      const std::vector<double> before = places();
+      const Walls walls_before = walls_;
+      for (int step = 0; step < steps_per_round; ++step) {
+        options_.watch.check();
+        if (!improve()) break;
+      }
+      for (SightOfWalls& sight : sights_) {
+        sight.place_rows(walls_);
+        sight.follow();
+        sight.estimate_noise(walls_);
+      }
+      if (height_known()) weigh_errors();
+      double moved = 0;
+      const std::vector<double> now = places();
+      for (std::size_t e = 0; e < now.size(); ++e)
+        moved = std::max(moved, std::abs(now[e] - before[e]));
+      for (std::size_t k = 0; k < profile_numbers; ++k)
+        for (std::size_t side = 0; side < 2; ++side)
+          if (box_.half[k] > 0)
+            moved = std::max(moved, (k == profile_width || k == profile_angle ? 1 : hardly_told) *
+                                        std::abs(walls_[side][k] - walls_before[side][k]));
+      converged = round > 1 && moved < settled_nm;
+    }
+    return converged;
+  }
+
   /// The negative logarithm of the posterior, and its Gauss-Newton equations.
   ProfileNormal normal(bool of_errors = false) const {
     ProfileNormal out = before_prior_of_errors(of_errors);
@@ -139,9 +146,12 @@ class Fit {
 
   /// The same without what is known beforehand of the simulation's errors.
   ProfileNormal before_prior_of_errors(bool of_errors = false) const {
-    ProfileNormal out{Eigen::MatrixXd::Zero(all_, all_), Eigen::VectorXd::Zero(all_), 0};
+    const int with_width = all_ + 1;
+    ProfileNormal out{Eigen::MatrixXd::Zero(with_width, with_width),
+                      Eigen::VectorXd::Zero(with_width), 0};
     for (std::size_t k = 0; k < sights_.size(); ++k)
       sights_[k].add_to(layout_, first_[k], walls_, of_errors, out);
+    out = followed(out, width_by_edges());
     for (int side = 0; side < layout_.walls; ++side)
       for (std::size_t k = 0; k < layout_.free.size(); ++k) {
         const std::size_t number = layout_.free[k];
@@ -156,6 +166,67 @@ class Fit {
         out.matrix(i, i) += precision;
       }
     return out;
+  }
+
+  /// Widths of an image's features, and their derivatives by the fit's numbers.
+  struct Widths {
+    std::vector<double> nm;
+    std::vector<Eigen::VectorXd> by_number;
+  };
+  Widths widths_of(std::size_t image) const {
+    const SightOfWalls& sight = sights_[image];
+    const std::vector<double> mean = sight.means();
+    const double longer = 1 / sight.shortening();
+    Widths out;
+    const auto add = [&](std::size_t edge, double factor) {
+      out.nm.back() += factor * longer * mean[edge];
+      out.by_number.back()(first_[image] + sight.edge(static_cast<int>(edge))) += factor * longer;
+    };
+    const auto another = [&] {
+      out.nm.push_back(0);
+      out.by_number.emplace_back(Eigen::VectorXd::Zero(all_));
+    };
+    sight.for_each_pair([&](std::size_t a, std::size_t b) {
+      another();
+      add(a, -1);
+      add(b, 1);
+    });
+    if (out.nm.empty() && box_.half[profile_width] > 0) {
+      another();
+      add(0, 2);
+    }
+    return out;
+  }
+
+  /// The mean width of all images and its derivatives.
+  struct MeanWidth {
+    double nm = 0;
+    Eigen::VectorXd by_number;
+    int images = 0;
+  };
+  MeanWidth mean_width() const {
+    MeanWidth out{0, Eigen::VectorXd::Zero(all_), 0};
+    for (std::size_t k = 0; k < sights_.size(); ++k) {
+      const Widths widths = widths_of(k);
+      if (widths.nm.empty()) continue;
+      ++out.images;
+      const double share = 1 / static_cast<double>(widths.nm.size());
+      for (std::size_t i = 0; i < widths.nm.size(); ++i) {
+        out.nm += share * widths.nm[i];
+        out.by_number += share * widths.by_number[i];
+      }
+    }
+    if (out.images > 0) out.nm /= out.images, out.by_number /= out.images;
+    return out;
+  }
+
+  /// Derivatives of the walls' width, which stays within the libraries' box.
+  Eigen::VectorXd width_by_edges() const {
+    return width_beyond_ ? Eigen::VectorXd(Eigen::VectorXd::Zero(all_)) : mean_width().by_number;
+  }
+
+  void weigh() {
+    for (SightOfWalls& sight : sights_) sight.weigh(walls_);
   }
 
   void move(const Eigen::VectorXd& step) {
@@ -173,6 +244,7 @@ class Fit {
 
   /// One Gauss-Newton step, shortened until it lowers the objective.
   bool improve() {
+    weigh();
     const ProfileNormal now = normal();
     const Eigen::VectorXd step = now.matrix.ldlt().solve(now.pull);
     const Walls walls = walls_;
@@ -182,6 +254,7 @@ class Fit {
       move(share * step);
       if (normal().value < now.value + 1e-9 * std::abs(now.value)) return step.norm() > 1e-6;
       walls_ = walls, sights_ = sights, errors_ = errors;
+      width_now();
     }
     return false;
   }
@@ -198,6 +271,7 @@ class Fit {
   /// point. Root mean square over what it may be, so that few data leave it large.
   void weigh_errors() {
     constexpr double least = std::numeric_limits<double>::min();  // what the data do not tell
+    weigh();
     const ProfileNormal data = before_prior_of_errors();
     SimulationErrors errors = errors_;
     std::array<double, shares.size()> evidence{};
@@ -220,7 +294,8 @@ class Fit {
   }
 
   /// With what the libraries' own errors move the fit by.
-  Eigen::MatrixXd covariance() const {
+  Eigen::MatrixXd covariance() {
+    weigh();
     const Eigen::MatrixXd by_noise =
         normal(true).matrix.ldlt().solve(Eigen::MatrixXd::Identity(all_, all_));
     Eigen::MatrixXd out = by_noise;
@@ -228,13 +303,14 @@ class Fit {
     std::vector<bool> added(sights_.size(), false);
     for (std::size_t k = 0; k < sights_.size(); ++k) {
       if (added[k]) continue;
-      Eigen::MatrixXd pull = sights_[k].pull_of_library(layout_, first_[k], walls_, all_);
+      Eigen::MatrixXd pull = sights_[k].pull_of_library(layout_, first_[k], walls_, all_ + 1);
       for (std::size_t i = k + 1; i < sights_.size(); ++i) {
         if (!sights_[i].shares_library(sights_[k])) continue;
         added[i] = true;
-        pull += sights_[i].pull_of_library(layout_, first_[i], walls_, all_);
+        pull += sights_[i].pull_of_library(layout_, first_[i], walls_, all_ + 1);
       }
-      const Eigen::MatrixXd moved = by_noise * pull;
+      const Eigen::MatrixXd moved =
+          by_noise * (pull.topRows(all_) + width_by_edges() * pull.bottomRows(1));
       out += moved * moved.transpose();
     }
     return out;
@@ -269,43 +345,14 @@ class Fit {
 
   /// The widths that the first image shows, and the mean width of all images.
   void add_widths(const Eigen::MatrixXd& covariance, ProfileFit& out) const {
-    Eigen::VectorXd all = Eigen::VectorXd::Zero(all_);
-    double width = 0, images = 0;
-    for (std::size_t k = 0; k < sights_.size(); ++k) {
-      const SightOfWalls& sight = sights_[k];
-      const std::vector<double> mean = sight.means();
-      const double longer = 1 / sight.shortening();
-      std::vector<Eigen::VectorXd> derivatives;
-      std::vector<double> widths;
-      const auto add = [&](int edge, double factor, Eigen::VectorXd& to) {
-        to(first_[k] + sight.edge(edge)) += factor * longer;
-      };
-      sight.for_each_pair([&](std::size_t a, std::size_t b) {
-        derivatives.emplace_back(Eigen::VectorXd::Zero(all_));
-        add(static_cast<int>(a), -1, derivatives.back());
-        add(static_cast<int>(b), 1, derivatives.back());
-        widths.push_back((mean[b] - mean[a]) * longer);
-      });
-      if (widths.empty() && box_.half[profile_width] > 0) {
-        derivatives.emplace_back(Eigen::VectorXd::Zero(all_));
-        add(0, 2, derivatives.back());
-        widths.push_back(2 * mean[0] * longer);
-      }
-      if (widths.empty()) continue;
-      ++images;
-      for (std::size_t i = 0; i < widths.size(); ++i) {
-        const double share = 1 / static_cast<double>(widths.size());
-        all += share * derivatives[i];
-        width += share * widths[i];
-        if (k == 0)
-          out.widths_nm.push_back(
-              {widths[i], std::sqrt(derivatives[i].dot(covariance * derivatives[i]))});
-      }
-    }
-    if (images == 0) return;
-    all /= images;
-    out.left[profile_width] = out.right[profile_width] = {
-        width / images, std::sqrt(std::max(0.0, all.dot(covariance * all)))};
+    const auto error = [&](const Eigen::VectorXd& by_number) {
+      return std::sqrt(std::max(0.0, by_number.dot(covariance * by_number)));
+    };
+    const Widths first = widths_of(0);
+    for (std::size_t i = 0; i < first.nm.size(); ++i)
+      out.widths_nm.push_back({first.nm[i], error(first.by_number[i])});
+    if (const MeanWidth all = mean_width(); all.images > 0)
+      out.left[profile_width] = out.right[profile_width] = {all.nm, error(all.by_number)};
   }
 
   void add_roughness(ProfileFit& out) const {

@@ -38,6 +38,17 @@ void spread(Eigen::Ref<Eigen::MatrixXd> pull, const ProfileLibrary& library) {
 
 }  // namespace
 
+ProfileNormal followed(const ProfileNormal& all, const Eigen::VectorXd& last_by_others) {
+  const Eigen::VectorXd& by = last_by_others;
+  const Eigen::Index last = by.size();
+  const Eigen::VectorXd column = all.matrix.col(last).head(last);
+  ProfileNormal out{all.matrix.topLeftCorner(last, last), all.pull.head(last) + all.pull(last) * by,
+                    all.value};
+  out.matrix += column * by.transpose() + by * column.transpose() +
+                all.matrix(last, last) * by * by.transpose();
+  return out;
+}
+
 SightOfWalls::SightOfWalls(const ProfileSight& sight, const ProfileFitOptions& options,
                            SimulationErrors& errors)
     : sight_(&sight), options_(&options), simulation_(&errors) {
@@ -170,6 +181,7 @@ void SightOfWalls::derivatives(const WallLayout& layout, int first, const Profil
   for (std::size_t k = 0; k < layout.free.size(); ++k)
     d.emplace_back(layout.wall(side) + static_cast<int>(k), gain_ * v.by_number[layout.free[k]]);
   d.emplace_back(first + edge(s.edge), -sign_of(edge_of(s)) * gain_ * slope);
+  d.emplace_back(layout.width, gain_ * v.by_number[profile_width]);
   const SimulationErrors::Sum sum = simulation_->at(looks_[static_cast<std::size_t>(side)], u);
   for (std::size_t i = 0; i < sum.numbers.size(); ++i)
     d.emplace_back(layout.errors() + sum.numbers[i], gain_ * sum.weights[i]);
@@ -177,16 +189,28 @@ void SightOfWalls::derivatives(const WallLayout& layout, int first, const Profil
     d.emplace_back(first + tilt(), gain_ * tilted_by(side) * v.by_number[profile_angle]);
 }
 
+void SightOfWalls::weigh(const Walls& walls) {
+  const std::array<ProfileNumbers, 2> numbers{seen(walls, 0), seen(walls, 1)};
+  variances_.clear();
+  for (const ProfileSample& s : sight_->data.samples) {
+    const int side = side_of(edge_of(s));
+    const double u = u_of(s);
+    variances_.push_back(
+        variance_of(model(library(side).at(u, numbers[static_cast<std::size_t>(side)]), u, side)));
+  }
+}
+
 void SightOfWalls::add_to(const WallLayout& layout, int first, const Walls& walls, bool of_errors,
                           ProfileNormal& out) const {
   const std::array<ProfileNumbers, 2> numbers{seen(walls, 0), seen(walls, 1)};
   Derivatives d;
-  for (const ProfileSample& s : sight_->data.samples) {
+  for (std::size_t at = 0; at < sight_->data.samples.size(); ++at) {
+    const ProfileSample& s = sight_->data.samples[at];
     const int side = side_of(edge_of(s));
     const ProfileNumbers& own = numbers[static_cast<std::size_t>(side)];
     const double u = u_of(s);
     const ProfileLibrary::Value v = library(side).at(u, own);
-    const double m = model(v, u, side), variance = variance_of(m), off = s.value - m;
+    const double variance = variances_[at], off = s.value - model(v, u, side);
     derivatives(layout, first, s, u, v, of_errors ? slope_around(u, side, own) : v.by_u, d);
     out.value += 0.5 * off * off / variance;
     for (const auto& [i, by_i] : d) {

@@ -15,10 +15,11 @@ namespace surf {
 using Walls = std::array<ProfileNumbers, 2>;
 
 /// The numbers of a fit in one vector: the walls', those of the simulation's errors, then those of
-/// each image.
+/// each image, then the walls' width, which is none of the fit's own: it follows from the edges.
 struct WallLayout {
   std::vector<std::size_t> free;  ///< numbers of a wall that are fitted
   int walls = 1;                  ///< 2: left and right walls have their own
+  int width = 0;                  ///< place of the width in the vector
 
   int wall(int side) const { return (walls == 1 ? 0 : side) * static_cast<int>(free.size()); }
   int errors() const { return walls * static_cast<int>(free.size()); }
@@ -29,6 +30,9 @@ struct ProfileNormal {
   Eigen::VectorXd pull;  ///< minus the gradient
   double value = 0;      ///< the negative logarithm of the posterior
 };
+
+/// The equations without the last number, which follows from the others by these derivatives.
+ProfileNormal followed(const ProfileNormal& all, const Eigen::VectorXd& last_by_others);
 
 /// One image's part of a fit. Its own numbers follow each other in the fit's vector: gain, offset,
 /// a displacement of each edge, the tilt. What the simulation is off by is of all images.
@@ -45,6 +49,9 @@ class SightOfWalls {
 
   /// Gain, offset and the places of edges, by a search.
   void begin(const Walls& walls);
+  /// Sets the variance of each pixel by what the fit says there. It stays until the next call, so
+  /// that the objective is one function, whose gradient `add_to` adds.
+  void weigh(const Walls& walls);
   /// Adds this image's part to the normal equations; its own numbers begin at `first`. Those that
   /// errors are taken from have slopes over some places.
   void add_to(const WallLayout& layout, int first, const Walls& walls, bool of_errors,
@@ -132,6 +139,7 @@ class SightOfWalls {
   double gain_ = 1, offset_ = 0, blur2_ = 0, contrast_ = 1, tilt_off_deg_ = 0;
   std::array<double, 2> noise_{};  // variance at level 0, and per level
   double least_variance_ = 0;
+  std::vector<double> variances_;                           // of each sample
   std::vector<std::vector<double>> places_, raw_, errors_;  // of each edge, by row
 };
 
