@@ -322,6 +322,7 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
   const ProfileBox first = first_box(job, width);
   ProfileFitOptions options;
   options.walls_alike = !job.walls_apart || job.kind == FeatureKind::hole;
+  options.one_feature = job.kind == FeatureKind::hole;
   options.model_error = job.model_error;
   options.prior_mean = first.middle;
   constexpr double unknown = std::numeric_limits<double>::infinity();

@@ -20,8 +20,9 @@ constexpr double hardly_told =
     0.1;  // heights and radii, known to nanometres, settle ten times as coarsely
 // Of the model's error, which may show. Tiers of physics differ by 1.3 to 2.7 % of the contrast.
 constexpr std::array shares{1.0, 0.5, 0.25};
-constexpr double known_height = 0.05;  // its standard error, over it
-constexpr double beyond_box = 1.2;     // of the box's half sizes: further away no quadratic holds
+constexpr double scales_agree = 0.005;  // of images, standard error
+constexpr double known_height = 0.05;   // its standard error, over it
+constexpr double beyond_box = 1.2;      // of the box's half sizes: further away no quadratic holds
 
 class Fit {
  public:
@@ -152,6 +153,7 @@ class Fit {
     for (std::size_t k = 0; k < sights_.size(); ++k)
       sights_[k].add_to(layout_, first_[k], walls_, of_errors, out);
     out = followed(out, width_by_edges());
+    if (options_.one_feature) share_width(out);
     for (int side = 0; side < layout_.walls; ++side)
       for (std::size_t k = 0; k < layout_.free.size(); ++k) {
         const std::size_t number = layout_.free[k];
@@ -218,6 +220,23 @@ class Fit {
     }
     if (out.images > 0) out.nm /= out.images, out.by_number /= out.images;
     return out;
+  }
+
+  /// All images show one feature, whose width they share as far as their scales agree.
+  void share_width(ProfileNormal& out) const {
+    const MeanWidth mean = mean_width();
+    const double deviation = scales_agree * std::abs(mean.nm),
+                 precision = 1 / (deviation * deviation);
+    for (std::size_t k = 0; k < sights_.size(); ++k) {
+      const Widths own = widths_of(k);
+      for (std::size_t i = 0; i < own.nm.size(); ++i) {
+        const double off = own.nm[i] - mean.nm;
+        const Eigen::VectorXd by = own.by_number[i] - mean.by_number;
+        out.value += 0.5 * precision * off * off;
+        out.pull -= precision * off * by;
+        out.matrix += precision * by * by.transpose();
+      }
+    }
   }
 
   /// Derivatives of the walls' width, which stays within the libraries' box.

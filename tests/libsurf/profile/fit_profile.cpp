@@ -333,6 +333,29 @@ TEST(FitProfile, ATiltedImageTellsTheHeightAndItsTiltIsFitted) {
   EXPECT_EQ(one.sights[0].tilt_deg.standard_error, 0);
 }
 
+TEST(FitProfile, ImagesOfOneFeatureShareItsWidth) {
+  TiltedScene scene;
+  scene.options.model_error = 0.5;
+  ProfileSight aside = scene.aside(2);
+  NormalNumbers normal(3, 1);
+  for (ProfileSample& sample : aside.data.samples) {
+    sample.x_nm += 0.03 * (sample.x_nm - 91.3);
+    sample.value += 200 * normal();
+  }
+  const auto found = [&](bool one) {
+    scene.options.one_feature = one;
+    const ProfileFit f = fit_profile({scene.above(), aside}, scene.options);
+    std::vector<double> widths;
+    for (const SightFit& sight : f.sights)
+      widths.push_back(sight.edges[1].place_nm.value - sight.edges[0].place_nm.value);
+    return std::pair(f.left[profile_width].standard_error, widths[1] - widths[0]);
+  };
+  const auto [error_apart, apart_nm] = found(false);
+  const auto [error, shared_nm] = found(true);
+  EXPECT_LT(std::abs(shared_nm), 0.5 * std::abs(apart_nm));
+  EXPECT_LT(error, 0.9 * error_apart);
+}
+
 // What the simulation is off by at flanks would be taken for another height, and not show.
 TEST(FitProfile, WhereHeightsAreFoundTheWholeErrorOfTheSimulationCounts) {
   TiltedScene scene;

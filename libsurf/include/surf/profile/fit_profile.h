@@ -55,6 +55,8 @@ struct ProfileSight {
 
 struct ProfileFitOptions {
   bool walls_alike = true;  ///< left and right walls have one shape
+  /// All images show the same one, whose width is one number, to 0.5 % by the images' scales.
+  bool one_feature = false;
   /// Priors of the numbers: normal, with these deviations; 0: held at the mean, infinite: none. The
   /// width follows from the edges' places.
   ProfileNumbers prior_mean{}, prior_deviation{};
