@@ -33,7 +33,7 @@ Examples:
   semsurf profile up.tif --sem tilted.tif --tilt 3deg --height 100nm --height-error 20nm --material Si --energy 1keV -o lines
   semsurf profile lines.tif --afm scan.gwy --material Si --energy 1keV -o lines
   semsurf profile via.png --pixel-size 2nm --kind hole --height 100nm --material Si --energy 1keV -o via
-  semsurf profile via.tif --sem right.tif --sem left.tif --tilt 12deg --azimuth 0deg --azimuth 180deg --kind hole
+  semsurf profile via.tif --sem right.tif --sem left.tif --tilt 35deg --azimuth 0deg --azimuth 180deg --kind hole
                   --height 100nm --height-error 25nm --material Si --energy 1keV -o via    how deep it is, too)";
 
 /// Files besides the image.

@@ -106,6 +106,26 @@ class Fit {
     return k == profile_top || k == profile_foot ? std::max(value, 0.0) : value;
   }
 
+  /// How far the walls' numbers moved, in such units that `settled_nm` is nothing: of what an image
+  /// hardly tells, rounds may go to and fro by a small part of its error.
+  double walls_moved(const Walls& before) const {
+    constexpr double of_error = 0.05;
+    if (layout_.free.empty()) return 0;
+    const auto solver = normal().matrix.ldlt();
+    double moved = 0;
+    for (int side = 0; side < layout_.walls; ++side)
+      for (std::size_t i = 0; i < layout_.free.size(); ++i) {
+        const std::size_t k = layout_.free[i], wall = static_cast<std::size_t>(side);
+        const int at = layout_.wall(side) + static_cast<int>(i);
+        const double variance = solver.solve(Eigen::VectorXd::Unit(all_, at))(at),
+                     nothing = k == profile_angle ? settled_nm : settled_nm / hardly_told,
+                     little = of_error * std::sqrt(std::max(0.0, variance));
+        moved = std::max(moved, std::abs(walls_[wall][k] - before[wall][k]) * settled_nm /
+                                    std::max(nothing, little));
+      }
+    return moved;
+  }
+
   /// Steps until nothing moves. False: it still did.
   bool settle() {
     if (height_known()) errors_.set_share(shares.back());
@@ -128,11 +148,7 @@ class Fit {
       const std::vector<double> now = places();
       for (std::size_t e = 0; e < now.size(); ++e)
         moved = std::max(moved, std::abs(now[e] - before[e]));
-      for (std::size_t k = 0; k < profile_numbers; ++k)
-        for (std::size_t side = 0; side < 2; ++side)
-          if (box_.half[k] > 0)
-            moved = std::max(moved, (k == profile_width || k == profile_angle ? 1 : hardly_told) *
-                                        std::abs(walls_[side][k] - walls_before[side][k]));
+      moved = std::max(moved, walls_moved(walls_before));
       converged = round > 1 && moved < settled_nm;
     }
     return converged;
