@@ -92,12 +92,10 @@ class Fit {
   }
 
   void width_now() {
-    double sum = 0, count = 0;
-    for (const SightOfWalls& sight : sights_)
-      if (const double width = sight.width_nm(); width > 0) sum += width, ++count;
-    if (count == 0) return;
-    for (auto& side : walls_) side[profile_width] = clamped(profile_width, sum / count);
-    width_beyond_ = walls_[0][profile_width] != sum / count;
+    const double width = mean_width().nm;
+    if (!(width > 0)) return;
+    for (auto& side : walls_) side[profile_width] = clamped(profile_width, width);
+    width_beyond_ = walls_[0][profile_width] != width;
   }
 
   double clamped(std::size_t k, double value) const {
@@ -241,7 +239,7 @@ class Fit {
   /// All images show one feature, whose width they share as far as their scales agree.
   void share_width(ProfileNormal& out) const {
     const MeanWidth mean = mean_width();
-    const double deviation = scales_agree * std::abs(mean.nm),
+    const double deviation = scales_agree * box_.middle[profile_width],
                  precision = 1 / (deviation * deviation);
     for (std::size_t k = 0; k < sights_.size(); ++k) {
       const Widths own = widths_of(k);

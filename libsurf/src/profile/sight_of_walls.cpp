@@ -81,14 +81,6 @@ std::vector<double> SightOfWalls::means() const {
   return out;
 }
 
-double SightOfWalls::width_nm() const {
-  const std::vector<double> mean = means();
-  double sum = 0, count = 0;
-  for_each_pair([&](std::size_t a, std::size_t b) { sum += mean[b] - mean[a], ++count; });
-  if (count == 0 && sight_->left->box().half[profile_width] > 0) sum = 2 * mean.front(), count = 1;
-  return count > 0 ? sum / count / shortening_ : 0;
-}
-
 double SightOfWalls::u_of(const ProfileSample& s) const {
   const auto e = static_cast<std::size_t>(s.edge);
   return sign_of(edge_of(s)) * (s.x_nm - places_[e][static_cast<std::size_t>(s.row)]);
@@ -234,18 +226,18 @@ Eigen::MatrixXd SightOfWalls::pull_of_library(const WallLayout& layout, int firs
   Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(
       all, apart ? places + static_cast<Eigen::Index>(sight_->right->variances().size()) : places);
   Derivatives d;
-  for (const ProfileSample& s : sight_->data.samples) {
+  for (std::size_t at = 0; at < sight_->data.samples.size(); ++at) {
+    const ProfileSample& s = sight_->data.samples[at];
     const double u = u_of(s);
     const int side = side_of(edge_of(s));
     const ProfileNumbers numbers = seen(walls, side);
     const ProfileLibrary::Value v = library(side).at(u, numbers);
-    const double variance = variance_of(model(v, u, side));
     derivatives(layout, first, s, u, v, slope_around(u, side, numbers), d);
     const Eigen::Index from = apart && side == 1 ? places : 0;
     for (std::size_t i = 0; i < v.places.size(); ++i)
       for (const auto& [number, by_number] : d)
         pull(number, from + static_cast<Eigen::Index>(v.places[i])) +=
-            by_number * gain_ * v.weights[i] / variance;
+            by_number * gain_ * v.weights[i] / variances_[at];
   }
   spread(pull.leftCols(places), *sight_->left);
   if (apart) spread(pull.rightCols(pull.cols() - places), *sight_->right);

@@ -56,8 +56,9 @@ class SightOfWalls {
   /// errors are taken from have slopes over some places.
   void add_to(const WallLayout& layout, int first, const Walls& walls, bool of_errors,
               ProfileNormal& out) const;
-  /// What the libraries' own errors move the fit by, as columns: all rows share them, and chance in
-  /// neighbouring places looks like a slope that tells where an edge is.
+  /// What the libraries' own errors move the fit by, as columns, by the variances of `weigh`: all
+  /// rows share them, and chance in neighbouring places looks like a slope that tells where an edge
+  /// is.
   Eigen::MatrixXd pull_of_library(const WallLayout& layout, int first, const Walls& walls,
                                   int all) const;
   bool shares_library(const SightOfWalls& other) const {
@@ -79,8 +80,6 @@ class SightOfWalls {
     for (std::size_t e = 0; e + 1 < edges.size(); ++e)
       if (edges[e].feature == edges[e + 1].feature) pair(e, e + 1);
   }
-  /// The mean width of what it shows; 0: it shows none.
-  double width_nm() const;
   /// Lengths along x in the image, over those of the specimen.
   double shortening() const { return shortening_; }
   const std::vector<std::vector<double>>& raw() const { return raw_; }

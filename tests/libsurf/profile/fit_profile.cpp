@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "afm/normal_numbers.h"
+#include "profile/library_of.h"
 #include "surf/core/error.h"
 
 namespace surf {
@@ -26,15 +27,7 @@ double signal(double u, const ProfileNumbers& n) {
 const ProfileBox box{{80, 100, 86, 4, 3}, {6, 0, 2, 2, 2}};
 const ProfileNumbers truth{80, 100, 86.6, 3.2, 3.5};
 
-ProfileLibrary library() {
-  const auto shapes = profile_design(box);
-  std::vector<std::vector<double>> signals;
-  for (const ProfileNumbers& n : shapes) {
-    signals.emplace_back();
-    for (int k = 0; k <= 140; ++k) signals.back().push_back(signal(-35 + 0.5 * k, n));
-  }
-  return {box, -35, 0.5, shapes, signals};
-}
+ProfileLibrary library() { return test::library_of(box, -35, 35, signal); }
 
 struct Made {
   PlacedImage image;

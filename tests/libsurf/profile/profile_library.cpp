@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "afm/normal_numbers.h"
+#include "profile/library_of.h"
 #include "surf/core/error.h"
 
 namespace surf {
@@ -20,15 +21,7 @@ double quadratic(double u, const ProfileNumbers& n) {
          0.01 * t * t * u / 10;
 }
 
-ProfileLibrary library() {
-  const auto shapes = profile_design(box);
-  std::vector<std::vector<double>> signals;
-  for (const ProfileNumbers& n : shapes) {
-    signals.emplace_back();
-    for (int k = 0; k <= 80; ++k) signals.back().push_back(quadratic(-20 + 0.5 * k, n));
-  }
-  return {box, -20, 0.5, shapes, signals};
-}
+ProfileLibrary library() { return test::library_of(box, -20, 20, quadratic); }
 
 TEST(ProfileLibrary, ADesignFillsItsBoxAndHoldsWhatIsFixed) {
   const auto shapes = profile_design(box);

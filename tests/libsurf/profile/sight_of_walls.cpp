@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "profile/library_of.h"
+
 namespace surf {
 namespace {
 
@@ -19,15 +21,7 @@ double signal(double u, const ProfileNumbers& n) {
          0.0015 * n[profile_height] * shadow;
 }
 
-ProfileLibrary library() {
-  const auto shapes = profile_design(box);
-  std::vector<std::vector<double>> signals;
-  for (const ProfileNumbers& n : shapes) {
-    signals.emplace_back();
-    for (int k = 0; k <= 140; ++k) signals.back().push_back(signal(-35 + 0.5 * k, n));
-  }
-  return {box, -35, 0.5, shapes, signals};
-}
+ProfileLibrary library() { return test::library_of(box, -35, 35, signal); }
 
 /// A line between two walls, seen at a tilt; places lie between the library's.
 ProfileSight sight(const ProfileLibrary& walls) {
