@@ -206,11 +206,15 @@ void judge(const char* what, const Case& c, const workflow::ProfileJob& job,
                    a = s.fit.left[profile_angle];
     fmt::print(
         "  {:28} {:5.2f} nm ({:3.0f} % in two); width {:6.2f} +- {:4.2f}, height {:6.2f} +- "
-        "{:5.2f}, angle {:5.2f} +- {:4.2f}; {:.0f} s{}{}\n",
+        "{:5.2f}, angle {:5.2f} +- {:4.2f}; {:.0f} s{}{}{}\n",
         what, o.rms_nm, 100 * o.within, w.value - c.shape.width_nm, w.standard_error,
         h.value - c.shape.wall.height_nm, h.standard_error, a.value - c.shape.wall.angle_deg,
-        a.standard_error, seconds, s.reasons.empty() ? "" : ": ",
-        s.reasons.empty() ? "" : s.reasons.front());
+        a.standard_error, seconds,
+        s.scan_height_nm ? fmt::format("; height by the scan {:.2f} +- {:.2f}",
+                                       s.scan_height_nm->value - c.shape.wall.height_nm,
+                                       s.scan_height_nm->standard_error)
+                         : "",
+        s.reasons.empty() ? "" : ": ", s.reasons.empty() ? "" : s.reasons.front());
     Pooled& p = pooled[what];
     const auto add = [](const Measured& m, double true_value, double& squares, double& in) {
       squares += std::pow(m.value - true_value, 2);

@@ -40,7 +40,7 @@ TEST(ShadingDoubt, LeavesWhatTheDataDidNotTell) {
 }
 
 TEST(ShadingDoubt, ImagesTellHeightsInTheirOwnWays) {
-  const double from_above = height_doubt_nm({FeatureKind::line, 100, 0, true});
+  const double from_above = height_doubt_nm({FeatureKind::line, 100, 0});
   EXPECT_EQ(from_above, 20);
   EXPECT_EQ(height_doubt_nm({FeatureKind::hole, 50}), 10);
   EXPECT_NEAR(height_doubt_nm({FeatureKind::hole, 50, 12}), 2, 1e-9);
@@ -49,7 +49,6 @@ TEST(ShadingDoubt, ImagesTellHeightsInTheirOwnWays) {
                more = height_doubt_nm({FeatureKind::line, 100, 8});
   EXPECT_NEAR(little, 5, 0.1);
   EXPECT_NEAR(more, 1.9, 0.1);
-  EXPECT_EQ(height_doubt_nm({FeatureKind::line, 100, 3, true}), 0);
   // The image from above still tells what it tells alone.
   EXPECT_EQ(height_doubt_nm({FeatureKind::line, 100, 0.1}), from_above);
   EXPECT_EQ(height_doubt_nm({FeatureKind::line, 20, 3}), 4);

@@ -26,9 +26,12 @@ constexpr double least_height_nm = 1;
 constexpr double largest_discrepancy = 3;  // over the allowed one
 constexpr double most_unexplained = 0.6;   // of the variation of mean profiles
 constexpr double pitch_of_scans = 0.005;   // what scans' heights are calibrated to
-constexpr double far_off = 2.5;            // standard errors of what was said
-constexpr int more_rounds = 3;             // where a number lies far from the middle of its box
-constexpr std::int64_t finer = 4;          // electrons of the last box over those of the others
+// Of what images are uncertain by: from a height known so well they would take a tenth of its
+// error.
+constexpr double told_no_better = 0.5;
+constexpr double far_off = 2.5;    // standard errors of what was said
+constexpr int more_rounds = 3;     // where a number lies far from the middle of its box
+constexpr std::int64_t finer = 4;  // electrons of the last box over those of the others
 
 /// A quadrant as it lies in an image whose x and y are exchanged.
 std::string transposed(const std::string& signal) {
@@ -148,6 +151,23 @@ std::optional<Measured> pitch_of(const std::vector<ImageEdge>& edges,
   return pitch;
 }
 
+/// Whether the rim hides the bottom of a hole, or hardly leaves it in sight: then a tilted image
+/// tells little of the depth. Empty: it does not.
+std::string hidden_bottom(const ProfileJob& job, double depth_nm, double width_nm) {
+  constexpr double hardly = 0.75, well = 0.6;  // of the width
+  if (job.kind != FeatureKind::hole) return {};
+  double tilt_deg = 0;
+  for (const ViewAngles& view : angles_of(job.view_settings, job.views.size(), 0))
+    tilt_deg = std::max(tilt_deg, view.tilt_deg);
+  const double share = depth_nm * std::tan(tilt_deg * degrees_to_radians) / width_nm;
+  if (share < hardly) return {};
+  return fmt::format(
+      "a beam tilted by {:g} degrees runs {:.0f} % of the width of a hole {} deep and {} wide to "
+      "the side, so that the bottom is hardly in sight: tilt it to {:.0f} degrees",
+      tilt_deg, 100 * share, format_length(depth_nm), format_length(width_nm),
+      std::atan(well * width_nm / depth_nm) / degrees_to_radians);
+}
+
 std::vector<std::string> reasons_of(const ProfileJob& job, const ProfileSummary& s) {
   std::vector<std::string> reasons;
   if (!s.fit.converged)
@@ -163,6 +183,10 @@ std::vector<std::string> reasons_of(const ProfileJob& job, const ProfileSummary&
         s.fit.sights[k].tilt_deg.value > 0
             ? "Is `beam.azimuth` off by 180 degrees?"
             : "Is it the image of the detector opposite, or are two images exchanged?"));
+  if (const std::string hidden =
+          hidden_bottom(job, s.fit.left[profile_height].value, s.fit.left[profile_width].value);
+      !hidden.empty())
+    reasons.push_back(hidden);
   const double height_off = std::abs(s.fit.left[profile_height].value - job.height_nm);
   if (job.height_error_nm > 0 && height_off > far_off * job.height_error_nm)
     reasons.push_back(fmt::format(
@@ -260,10 +284,7 @@ void find_height(ProfileJob& job, ProfileSummary& s, const Reporter& reporter) {
 
 HeightEvidence evidence_of(const ProfileJob& job, const std::vector<ProfileView>& views) {
   HeightEvidence by{job.kind, job.height_nm};
-  for (const ProfileView& v : views) {
-    by.tilt_deg = std::max(by.tilt_deg, v.tilt_deg);
-    by.by_side_detector = by.by_side_detector || v.by_side_detector();
-  }
+  for (const ProfileView& v : views) by.tilt_deg = std::max(by.tilt_deg, v.tilt_deg);
   return by;
 }
 
@@ -303,10 +324,12 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
           same_scan ? s.threshold.edges : find_edges(view, job.kind, job.threshold).edges));
     }
   }
-  for (std::size_t k = 0; k < sights.size(); ++k)
+  for (std::size_t k = 0; k < sights.size(); ++k) {
+    sights[k].shows_shading_alone = views[k].tilt_deg == 0 && views[k].by_side_detector();
     sights[k].signal = static_cast<int>(
         std::ranges::find_if(views, [&](const ProfileView& v) { return v.shows_as(views[k]); }) -
         views.begin());
+  }
   s.threshold_widths_nm = threshold_widths(s.threshold, job.kind);
   double width = 100;
   if (job.kind != FeatureKind::edge) {
@@ -314,6 +337,8 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
     for (const Measured& w : s.threshold_widths_nm)
       width += w.value / static_cast<double>(s.threshold_widths_nm.size());
   }
+  if (const std::string hidden = hidden_bottom(job, job.height_nm, width); !hidden.empty())
+    reporter.note(hidden);
   s.pitch_nm = job.pitch_nm.value_or(s.threshold.pitch_nm);
   if (job.kind == FeatureKind::edge || job.kind == FeatureKind::hole) s.pitch_nm = 0;
 
@@ -328,6 +353,10 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
   constexpr double unknown = std::numeric_limits<double>::infinity();
   options.prior_deviation = {unknown, job.height_error_nm, unknown, first.half[profile_top],
                              first.half[profile_foot]};
+  const double doubt_nm = height_doubt_nm(evidence_of(job, views));
+  options.hold_height = job.height_error_nm > 0 && job.height_error_nm <= told_no_better * doubt_nm;
+  if (const double shading_nm = shading_doubt_nm(job.height_nm); doubt_nm < shading_nm)
+    options.shading_doubt_nm = shading_nm;
   ProfileBox box = first;
   int left = job.rounds, more = more_rounds;
   for (int round = 0; left > 0; ++round) {
@@ -386,9 +415,9 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
   }
   for (const SightFit& fit : s.fit.sights)
     s.discrepancy_share = std::max(s.discrepancy_share, fit.discrepancy_share);
-  const double doubt_nm = height_doubt_nm(evidence_of(job, views));
   for (auto* wall : {&s.fit.left, &s.fit.right})
-    *wall = doubted_height(*wall, {job.height_nm, job.height_error_nm}, doubt_nm);
+    if (!options.hold_height)
+      *wall = doubted_height(*wall, {job.height_nm, job.height_error_nm}, doubt_nm);
   std::vector<double> errors;
   for (const FittedEdge& e : s.fit.edges()) errors.push_back(e.place_nm.standard_error);
   s.measured_pitch_nm = pitch_of(sights.front().data.edges, errors);

@@ -16,11 +16,12 @@ constexpr double end_of_flank_nm = 0.26;  // in the image; chosen on 3 lines of 
 
 }  // namespace
 
+double shading_doubt_nm(double height_nm) { return from_above * height_nm; }
+
 double height_doubt_nm(const HeightEvidence& by) {
-  const double upright_nm = from_above * by.height_nm;
+  const double upright_nm = shading_doubt_nm(by.height_nm);
   if (by.tilt_deg == 0) return upright_nm;
   if (by.kind == FeatureKind::hole) return bottom_of_hole * by.height_nm;
-  if (by.by_side_detector) return 0;
   return std::min(upright_nm, end_of_flank_nm / std::sin(by.tilt_deg * degrees_to_radians));
 }
 

@@ -11,10 +11,12 @@ namespace surf::workflow {
 /// What images tell of heights by, in which tiers of physics differ.
 struct HeightEvidence {
   FeatureKind kind = FeatureKind::line;
-  double height_nm = 0;           ///< that is expected
-  double tilt_deg = 0;            ///< of the beam, the largest
-  bool by_side_detector = false;  ///< which shows slopes
+  double height_nm = 0;  ///< that is expected
+  double tilt_deg = 0;   ///< of the beam, the largest
 };
+
+/// What shading in images from above tells of the height is uncertain by, nm.
+double shading_doubt_nm(double height_nm);
 
 /// What images tell of the height is uncertain by, nm, beside all that the fit knows of (a standard
 /// deviation). From above they tell it by how dark it is beside walls, by tilted beams from how far

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "follow_rows.h"
 #include "sight_of_walls.h"
@@ -21,8 +22,9 @@ constexpr double hardly_told =
 // Of the model's error, which may show. Tiers of physics differ by 1.3 to 2.7 % of the contrast.
 constexpr std::array shares{1.0, 0.5, 0.25};
 constexpr double scales_agree = 0.005;  // of images, standard error
-constexpr double known_height = 0.05;   // its standard error, over it
-constexpr double beyond_box = 1.2;      // of the box's half sizes: further away no quadratic holds
+constexpr double degree = std::numbers::pi / 180;
+constexpr double known_height = 0.05;  // its standard error, over it
+constexpr double beyond_box = 1.2;     // of the box's half sizes: further away no quadratic holds
 
 class Fit {
  public:
@@ -36,7 +38,9 @@ class Fit {
     walls_[0] = walls_[1] = box_.middle;
     for (auto& side : walls_)
       for (std::size_t k = 0; k < profile_numbers; ++k)
-        if (k != profile_width && options.prior_deviation[k] == 0) side[k] = options.prior_mean[k];
+        if ((k != profile_width && options.prior_deviation[k] == 0) ||
+            (k == profile_height && options.hold_height))
+          side[k] = options.prior_mean[k];
     for (const ProfileSight& sight : sights) {
       first_.push_back(all_);
       sights_.emplace_back(sight, options, errors_);
@@ -45,6 +49,12 @@ class Fit {
     const int before = layout_.errors() + errors_.numbers();
     for (int& first : first_) first += before;
     all_ += before;
+    if (options.shading_doubt_nm > 0 &&
+        std::ranges::any_of(sights, &ProfileSight::shows_shading_alone)) {
+      layout_.shading = all_++;
+      const double a = box_.middle[profile_angle] * degree;
+      layout_.angle_by_shading = std::sin(a) * std::cos(a) / box_.middle[profile_height] / degree;
+    }
     layout_.width = all_;
     width_now();
     for (SightOfWalls& sight : sights_) sight.begin(walls_);
@@ -79,6 +89,17 @@ class Fit {
           sights, [&](const ProfileSight& s) { return std::ranges::all_of(s.data.edges, holds); });
     };
     return all(right) || all([&](const ImageEdge& e) { return !right(e); });
+  }
+
+  /// Walls as an image sees them.
+  Walls walls_of(const SightOfWalls& sight) const {
+    Walls out = walls_;
+    if (sight.shows_shading_alone())
+      for (auto& side : out) {
+        side[profile_height] += shading_off_nm_;
+        side[profile_angle] += layout_.angle_by_shading * shading_off_nm_;
+      }
+    return out;
   }
 
   /// Mean places of all edges of all images.
@@ -137,9 +158,9 @@ class Fit {
         if (!improve()) break;
       }
       for (SightOfWalls& sight : sights_) {
-        sight.place_rows(walls_);
+        sight.place_rows(walls_of(sight));
         sight.follow();
-        sight.estimate_noise(walls_);
+        sight.estimate_noise(walls_of(sight));
       }
       if (height_known()) weigh_errors();
       double moved = 0;
@@ -153,21 +174,33 @@ class Fit {
   }
 
   /// The negative logarithm of the posterior, and its Gauss-Newton equations.
-  ProfileNormal normal(bool of_errors = false) const {
-    ProfileNormal out = before_prior_of_errors(of_errors);
+  ProfileNormal normal() const {
+    ProfileNormal out = before_prior_of_errors();
     errors_.add_prior(layout_.errors(), out.value, out.pull, out.matrix);
     return out;
   }
 
   /// The same without what is known beforehand of the simulation's errors.
-  ProfileNormal before_prior_of_errors(bool of_errors = false) const {
+  ProfileNormal before_prior_of_errors() const {
+    ProfileNormal out = of_data_and_shapes();
+    hold_heights(out);
+    return out;
+  }
+
+  ProfileNormal of_data_and_shapes(bool of_errors = false) const {
     const int with_width = all_ + 1;
     ProfileNormal out{Eigen::MatrixXd::Zero(with_width, with_width),
                       Eigen::VectorXd::Zero(with_width), 0};
     for (std::size_t k = 0; k < sights_.size(); ++k)
-      sights_[k].add_to(layout_, first_[k], walls_, of_errors, out);
+      sights_[k].add_to(layout_, first_[k], walls_of(sights_[k]), of_errors, out);
     out = followed(out, width_by_edges());
     if (options_.one_feature) share_width(out);
+    if (const int i = layout_.shading; i >= 0) {
+      const double precision = 1 / (options_.shading_doubt_nm * options_.shading_doubt_nm);
+      out.value += 0.5 * shading_off_nm_ * shading_off_nm_ * precision;
+      out.pull(i) -= shading_off_nm_ * precision;
+      out.matrix(i, i) += precision;
+    }
     for (int side = 0; side < layout_.walls; ++side)
       for (std::size_t k = 0; k < layout_.free.size(); ++k) {
         const std::size_t number = layout_.free[k];
@@ -182,6 +215,24 @@ class Fit {
         out.matrix(i, i) += precision;
       }
     return out;
+  }
+
+  /// Places of heights that are held, in the fit's vector.
+  std::vector<Eigen::Index> held() const {
+    std::vector<Eigen::Index> out;
+    const auto at = std::ranges::find(layout_.free, std::size_t{profile_height});
+    if (options_.hold_height && at != layout_.free.end())
+      for (int side = 0; side < layout_.walls; ++side)
+        out.push_back(layout_.wall(side) + (at - layout_.free.begin()));
+    return out;
+  }
+
+  /// Equations of the other numbers, at these heights.
+  void hold_heights(ProfileNormal& out) const {
+    for (const Eigen::Index i : held()) {
+      out.matrix.row(i).setZero(), out.matrix.col(i).setZero();
+      out.matrix(i, i) = 1, out.pull(i) = 0;
+    }
   }
 
   /// Widths of an image's features, and their derivatives by the fit's numbers.
@@ -259,7 +310,7 @@ class Fit {
   }
 
   void weigh() {
-    for (SightOfWalls& sight : sights_) sight.weigh(walls_);
+    for (SightOfWalls& sight : sights_) sight.weigh(walls_of(sight));
   }
 
   void move(const Eigen::VectorXd& step) {
@@ -270,6 +321,7 @@ class Fit {
         value = clamped(number, value + step(layout_.wall(side) + static_cast<int>(k)));
       }
     if (layout_.walls == 1) walls_[1] = walls_[0];
+    if (layout_.shading >= 0) shading_off_nm_ += step(layout_.shading);
     errors_.move(step, layout_.errors());
     for (std::size_t k = 0; k < sights_.size(); ++k) sights_[k].move(step, first_[k]);
     width_now();
@@ -283,10 +335,11 @@ class Fit {
     const Walls walls = walls_;
     const std::vector<SightOfWalls> sights = sights_;
     const SimulationErrors errors = errors_;
+    const double shading_off_nm = shading_off_nm_;
     for (double share = 1; share > 1e-3; share *= 0.3) {
       move(share * step);
       if (normal().value < now.value + 1e-9 * std::abs(now.value)) return step.norm() > 1e-6;
-      walls_ = walls, sights_ = sights, errors_ = errors;
+      walls_ = walls, sights_ = sights, errors_ = errors, shading_off_nm_ = shading_off_nm;
       width_now();
     }
     return false;
@@ -295,8 +348,8 @@ class Fit {
   /// Where heights are found, what the simulation is off by at flanks looks like another height:
   /// all that it may be off by counts.
   bool height_known() const {
-    return options_.prior_deviation[profile_height] <=
-           known_height * options_.prior_mean[profile_height];
+    return options_.hold_height || options_.prior_deviation[profile_height] <=
+                                       known_height * options_.prior_mean[profile_height];
   }
 
   /// How much of what the simulation may be off by shows, by its marginal likelihood (an empirical
@@ -329,18 +382,27 @@ class Fit {
   /// With what the libraries' own errors move the fit by.
   Eigen::MatrixXd covariance() {
     weigh();
-    const Eigen::MatrixXd by_noise =
-        normal(true).matrix.ldlt().solve(Eigen::MatrixXd::Identity(all_, all_));
-    Eigen::MatrixXd out = by_noise;
+    const ProfileNormal free = of_data_and_shapes(true);
+    ProfileNormal now = free;
+    hold_heights(now);
+    errors_.add_prior(layout_.errors(), now.value, now.pull, now.matrix);
+    Eigen::MatrixXd by_noise = now.matrix.ldlt().solve(Eigen::MatrixXd::Identity(all_, all_)), out;
+    Eigen::VectorXd by_height = Eigen::VectorXd::Zero(all_);
+    for (const Eigen::Index i : held()) by_noise(i, i) = 0;
+    for (const Eigen::Index i : held()) by_height -= by_noise * free.matrix.col(i);
+    for (const Eigen::Index i : held()) by_height(i) = 1;
+    by_height *= options_.prior_deviation[profile_height];
+    out = by_noise + by_height * by_height.transpose();
     // Images that share a library share its errors.
     std::vector<bool> added(sights_.size(), false);
     for (std::size_t k = 0; k < sights_.size(); ++k) {
       if (added[k]) continue;
-      Eigen::MatrixXd pull = sights_[k].pull_of_library(layout_, first_[k], walls_, all_ + 1);
+      Eigen::MatrixXd pull =
+          sights_[k].pull_of_library(layout_, first_[k], walls_of(sights_[k]), all_ + 1);
       for (std::size_t i = k + 1; i < sights_.size(); ++i) {
         if (!sights_[i].shares_library(sights_[k])) continue;
         added[i] = true;
-        pull += sights_[i].pull_of_library(layout_, first_[i], walls_, all_ + 1);
+        pull += sights_[i].pull_of_library(layout_, first_[i], walls_of(sights_[i]), all_ + 1);
       }
       const Eigen::MatrixXd moved =
           by_noise * (pull.topRows(all_) + width_by_edges() * pull.bottomRows(1));
@@ -368,9 +430,9 @@ class Fit {
                         std::abs(wall[k].value - box_.middle[k]) > beyond_box * box_.half[k] - 1e-9;
       }
     }
-    for (SightOfWalls& sight : sights_) sight.place_rows(walls_);
+    for (SightOfWalls& sight : sights_) sight.place_rows(walls_of(sight));
     for (std::size_t k = 0; k < sights_.size(); ++k)
-      out.sights.push_back(sights_[k].result(walls_, known, first_[k]));
+      out.sights.push_back(sights_[k].result(walls_of(sights_[k]), known, first_[k]));
     add_widths(known, out);
     add_roughness(out);
     return out;
@@ -414,6 +476,7 @@ class Fit {
   std::vector<SightOfWalls> sights_;
   std::vector<int> first_;  // of each image's numbers
   int all_ = 0;
+  double shading_off_nm_ = 0;  // of the height
   bool width_beyond_ = false;  // of the libraries' box
 };
 

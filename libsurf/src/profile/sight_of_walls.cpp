@@ -174,6 +174,9 @@ void SightOfWalls::derivatives(const WallLayout& layout, int first, const Profil
     d.emplace_back(layout.wall(side) + static_cast<int>(k), gain_ * v.by_number[layout.free[k]]);
   d.emplace_back(first + edge(s.edge), -sign_of(edge_of(s)) * gain_ * slope);
   d.emplace_back(layout.width, gain_ * v.by_number[profile_width]);
+  if (layout.shading >= 0 && sight_->shows_shading_alone)
+    d.emplace_back(layout.shading, gain_ * (v.by_number[profile_height] +
+                                            layout.angle_by_shading * v.by_number[profile_angle]));
   const SimulationErrors::Sum sum = simulation_->at(looks_[static_cast<std::size_t>(side)], u);
   for (std::size_t i = 0; i < sum.numbers.size(); ++i)
     d.emplace_back(layout.errors() + sum.numbers[i], gain_ * sum.weights[i]);

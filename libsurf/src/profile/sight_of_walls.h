@@ -15,11 +15,14 @@ namespace surf {
 using Walls = std::array<ProfileNumbers, 2>;
 
 /// The numbers of a fit in one vector: the walls', those of the simulation's errors, then those of
-/// each image, then the walls' width, which is none of the fit's own: it follows from the edges.
+/// each image, what shading is off by, then the walls' width, which is none of the fit's own: it
+/// follows from the edges.
 struct WallLayout {
   std::vector<std::size_t> free;  ///< numbers of a wall that are fitted
   int walls = 1;                  ///< 2: left and right walls have their own
   int width = 0;                  ///< place of the width in the vector
+  int shading = -1;               ///< of what shading tells the height off by; -1: there is none
+  double angle_by_shading = 0;    ///< degrees by nm: walls that are as wide as before
 
   int wall(int side) const { return (walls == 1 ? 0 : side) * static_cast<int>(free.size()); }
   int errors() const { return walls * static_cast<int>(free.size()); }
@@ -61,6 +64,7 @@ class SightOfWalls {
   /// is.
   Eigen::MatrixXd pull_of_library(const WallLayout& layout, int first, const Walls& walls,
                                   int all) const;
+  bool shows_shading_alone() const { return sight_->shows_shading_alone; }
   bool shares_library(const SightOfWalls& other) const {
     return sight_->left == other.sight_->left && sight_->right == other.sight_->right;
   }

@@ -326,6 +326,41 @@ TEST(FitProfile, ATiltedImageTellsTheHeightAndItsTiltIsFitted) {
   EXPECT_EQ(one.sights[0].tilt_deg.standard_error, 0);
 }
 
+/// The ground is darker the higher the wall beside it is.
+double shaded_signal(double u, const ProfileNumbers& n) {
+  return flank_signal(u, n, 0) - 0.006 * n[profile_height] * std::exp(-std::abs(u + 10) / 12);
+}
+
+// Another physics shades the ground as a lower wall would. The tilted image tells how high it is.
+TEST(FitProfile, ShadingAloneTellsHeightsOnlyRoughly) {
+  TiltedScene scene;
+  const ProfileLibrary shaded = test::library_of(scene.open, -35, 35, shaded_signal);
+  ProfileSight shading = scene.above();
+  shading.left = shading.right = &shaded;
+  shading.signal = 1;
+  shading.shows_shading_alone = true;
+  const PlacedImage tilted = scene.image_at(TiltedScene::said_deg, 2);
+  const ProfileSight aside{profile_data(tilted, find_edges(tilted, FeatureKind::line).edges),
+                           &scene.left, &scene.right, TiltedScene::said_deg};
+  ProfileNumbers lower = scene.real;
+  lower[profile_height] = 90;
+  NormalNumbers normal(4, 9);
+  for (ProfileSample& s : shading.data.samples) {
+    const double u = 0.5 * scene.real[profile_width] - std::abs(s.x_nm - 91.3);
+    s.value += 100 * (shaded_signal(u, lower) - flank_signal(u, lower, 0)) + normal();
+  }
+  const auto height = [&](double doubt_nm) {
+    scene.options.shading_doubt_nm = doubt_nm;
+    const ProfileFit f = fit_profile({scene.above(), shading, aside}, scene.options);
+    EXPECT_TRUE(f.converged);
+    return f.left[profile_height];
+  };
+  const Measured believed = height(0), doubted = height(20);
+  EXPECT_LT(believed.value, 100 - 3 * believed.standard_error);
+  EXPECT_NEAR(doubted.value, 100, 2 * doubted.standard_error);
+  EXPECT_LT(doubted.standard_error, 5);
+}
+
 TEST(FitProfile, ImagesOfOneFeatureShareItsWidth) {
   TiltedScene scene;
   scene.options.model_error = 0.5;
@@ -347,6 +382,26 @@ TEST(FitProfile, ImagesOfOneFeatureShareItsWidth) {
   const auto [error, shared_nm] = found(true);
   EXPECT_LT(std::abs(shared_nm), 0.5 * std::abs(apart_nm));
   EXPECT_LT(error, 0.9 * error_apart);
+}
+
+// A scan tells the height better than images do, which pull at it by what physics they leave out.
+TEST(FitProfile, AHeldHeightStaysAndItsErrorEntersTheOthers) {
+  TiltedScene scene;
+  scene.options.hold_height = true;
+  const auto found = [&](double height_nm, double error_nm) {
+    scene.options.prior_mean[profile_height] = height_nm;
+    scene.options.prior_deviation[profile_height] = error_nm;
+    return fit_profile({scene.above(), scene.aside(2)}, scene.options).left;
+  };
+  const auto surely = found(98, 1e-3), higher = found(98.5, 1e-3), roughly = found(98, 1.5);
+  EXPECT_EQ(roughly[profile_height].value, 98);
+  EXPECT_NEAR(roughly[profile_height].standard_error, 1.5, 1e-9);
+  const double angle_per_nm = (higher[profile_angle].value - surely[profile_angle].value) / 0.5;
+  EXPECT_NEAR(roughly[profile_angle].value, surely[profile_angle].value, 1e-3);
+  EXPECT_NEAR(roughly[profile_angle].standard_error,
+              std::hypot(surely[profile_angle].standard_error, 1.5 * angle_per_nm),
+              0.1 * roughly[profile_angle].standard_error);
+  EXPECT_GT(1.5 * std::abs(angle_per_nm), surely[profile_angle].standard_error);
 }
 
 // What the simulation is off by at flanks would be taken for another height, and not show.

@@ -51,6 +51,8 @@ struct ProfileSight {
   /// Images of one signal at one energy have one number: their simulations are off by about the
   /// same, the less they differ in tilt.
   int signal = 0;
+  /// It tells heights by shading alone, which physics differ in: see `shading_doubt_nm`.
+  bool shows_shading_alone = false;
 };
 
 struct ProfileFitOptions {
@@ -60,6 +62,13 @@ struct ProfileFitOptions {
   /// Priors of the numbers: normal, with these deviations; 0: held at the mean, infinite: none. The
   /// width follows from the edges' places.
   ProfileNumbers prior_mean{}, prior_deviation{};
+  /// The height stays at its prior's mean, and the prior's deviation enters all errors: for heights
+  /// that are known better than images tell them (a consider parameter: Tapley, Schutz and Born,
+  /// Statistical Orbit Determination, 2004, section 6.2).
+  bool hold_height = false;
+  /// Images that show shading alone see the height off by one number, normal with this deviation;
+  /// how far flanks run they see right. 0: none.
+  double shading_doubt_nm = 0;
   /// What the simulation may be off by: a share of the signal's contrast, correlated over some nm,
   /// as much again over ten times as many. How much of it there is, a quarter or more, is measured
   /// where the height is known to 5 %.
