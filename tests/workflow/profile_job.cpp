@@ -223,10 +223,10 @@ TEST_F(ProfileJobTest, TiltedImagesTellAHolesDepth) {
 }
 
 // What is hidden tells nothing, and was taken for a shallower hole.
-TEST_F(ProfileJobTest, SaysThatTheBottomIsHardlyInSight) {
+TEST_F(ProfileJobTest, SaysThatTheBottomIsBadlySeen) {
   job_.kind = FeatureKind::hole;
   job_.sem.image = hole();
-  job_.height_nm = 30, job_.height_error_nm = 1;
+  job_.height_nm = 30, job_.height_error_nm = 0.5;
   job_.views.resize(1);
   job_.views[0].image = hole(50, 90);
   job_.view_settings.tilts_deg = {50};
@@ -237,7 +237,11 @@ TEST_F(ProfileJobTest, SaysThatTheBottomIsHardlyInSight) {
   Reporter reporter;
   reporter.on_note = [&](const std::string& note) { notes.push_back(note); };
   EXPECT_THAT(run(job_, reporter).reasons, testing::Contains(HasSubstr("hardly in sight")));
-  EXPECT_THAT(notes, testing::Contains(HasSubstr("bottom")));
+  EXPECT_THAT(notes, testing::Contains(HasSubstr("hardly in sight")));
+  job_.views.clear();
+  job_.view_settings = {};
+  job_.height_nm = 60;
+  EXPECT_THAT(run(job_).reasons, testing::Contains(HasSubstr("deeper than 1.2")));
 }
 
 TEST_F(ProfileJobTest, LinesAlongXAreTurnedAndThreadsChangeNothing) {
