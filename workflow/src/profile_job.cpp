@@ -151,6 +151,13 @@ std::optional<Measured> pitch_of(const std::vector<ImageEdge>& edges,
   return pitch;
 }
 
+double largest_tilt_deg(const ProfileJob& job) {
+  double out = 0;
+  for (const ViewAngles& view : angles_of(job.view_settings, job.views.size(), 0))
+    out = std::max(out, view.tilt_deg);
+  return out;
+}
+
 /// Why images tell the depth of a hole badly: its rim hides the bottom from a tilted beam, or
 /// hardly leaves it in sight, or it is so deep that tiers of physics differ in how dark it is.
 /// Empty: they do not, or it is told.
@@ -166,9 +173,7 @@ std::string bottom_badly_seen(const ProfileJob& job, double depth_nm, double wid
         "physics, and one was found a quarter too shallow. Measure the depth by other means and "
         "give it as `profile.height`",
         size, deep);
-  double tilt_deg = 0;
-  for (const ViewAngles& view : angles_of(job.view_settings, job.views.size(), 0))
-    tilt_deg = std::max(tilt_deg, view.tilt_deg);
+  const double tilt_deg = largest_tilt_deg(job);
   const double share = depth_nm * std::tan(tilt_deg * degrees_to_radians) / width_nm;
   if (share < hardly) return {};
   return fmt::format(
@@ -291,12 +296,6 @@ void find_height(ProfileJob& job, ProfileSummary& s, const Reporter& reporter) {
       fmt::format("height by the scan: {:.2f} ± {:.2f} nm", job.height_nm, job.height_error_nm));
 }
 
-HeightEvidence evidence_of(const ProfileJob& job, const std::vector<ProfileView>& views) {
-  HeightEvidence by{job.kind, job.height_nm};
-  for (const ProfileView& v : views) by.tilt_deg = std::max(by.tilt_deg, v.tilt_deg);
-  return by;
-}
-
 }  // namespace
 
 ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
@@ -362,7 +361,7 @@ ProfileSummary run(const ProfileJob& given, const Reporter& reporter) {
   constexpr double unknown = std::numeric_limits<double>::infinity();
   options.prior_deviation = {unknown, job.height_error_nm, unknown, first.half[profile_top],
                              first.half[profile_foot]};
-  const double doubt_nm = height_doubt_nm(evidence_of(job, views));
+  const double doubt_nm = height_doubt_nm({job.kind, job.height_nm, largest_tilt_deg(job)});
   options.hold_height = job.height_error_nm > 0 && job.height_error_nm <= told_no_better * doubt_nm;
   if (const double shading_nm = shading_doubt_nm(job.height_nm); doubt_nm < shading_nm)
     options.shading_doubt_nm = shading_nm;
